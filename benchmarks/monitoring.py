@@ -46,8 +46,10 @@ def requirement(sentence: str, id: str = "R1") -> FormalizedRequirement:
 
 def always(trigger: f.Formula, demanded: f.Formula, id: str = "R1") -> FormalizedRequirement:
     """`H(trigger -> demanded)` as a monitor: FRETish has no `since` of its own."""
-    breach = f.and_(trigger, f.not_(demanded))
-    watch = MonitorSpec(trigger, breach, f.FALSE, f.FALSE, f.FALSE, f.FALSE, None, 0, renewed=False)
+    violation = f.and_(trigger, f.not_(demanded))
+    watch = MonitorSpec(
+        trigger, violation, f.FALSE, f.FALSE, f.FALSE, f.FALSE, None, 0, renewed=False
+    )
     return replace(requirement("whenever a sw shall immediately satisfy b", id), watch=watch)
 
 
@@ -116,8 +118,8 @@ def truths(machine: Monitor, literals: Mapping[str, int], every: int) -> int:
     Nobody calls this of ours: `evaluate` is what a user calls.
     """
     (signals,) = machine.columns(every, **literals)
-    broken = once(signals.breach, 0, None, every) if signals.breach else 0
-    return every ^ (broken | signals.fails)
+    broken = once(signals.violation, 0, None, every) if signals.violation else 0
+    return every ^ (broken | signals.violated_if_ended)
 
 
 def verdict(machine: Monitor, columns: Mapping[str, Column], ticks: int) -> object:

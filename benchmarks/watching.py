@@ -1,4 +1,4 @@
-"""A watch: messages a second that it takes, against an audit of the same log and a call of `owed`.
+"""A watch: messages a second that it takes, against an audit of the log; a look at obligations.
 
     python -m benchmarks.watching [LOG]
 
@@ -44,7 +44,7 @@ def requirements(folder: Path, time_: str) -> Iterator[Path]:
 
 
 def taken(plan: Plan, arrivals: list[Arrival]) -> tuple[float, float]:
-    """Seconds of a session that judges, and of a whole watch, which also looks what is owed."""
+    """Seconds of a session that judges, and of a whole watch, which also looks what is pending."""
     session, start = Session(plan), time.process_time()
     for each in arrivals:
         session.arrive(each)
@@ -64,21 +64,21 @@ def audited(plan: Plan, log: str) -> float:
     return time.process_time() - start
 
 
-def owed(folder: Path) -> float:
+def pending(folder: Path) -> float:
     """Nanoseconds of one call, of the first requirement."""
     requirement = read_project(folder).requirements[0]
-    module = executed(monitor.text(requirement), "owed")
+    module = executed(monitor.text(requirement), "pending")
     running = module.MONITOR()
     running.advance([dict.fromkeys(running.PROPOSITIONS, True)])
     start = time.process_time()
     for _ in range(OWED):
-        [each.owed for each in running.standings()]
+        [each.obligation_pending for each in running.standings()]
     return (time.process_time() - start) / OWED * 1e9
 
 
 def main() -> None:
     log = sys.argv[1] if len(sys.argv) > 1 else str(ROOT / "traces" / "mission-seed15.mcap")
-    print(f"{'':40}{'messages':>9}{'audit':>12}{'session':>12}{'watch':>12}{'owed':>10}")
+    print(f"{'':40}{'messages':>9}{'audit':>12}{'session':>12}{'watch':>12}{'pending':>10}")
     for name in ("requirements", "requirements/mission"):
         for clock in ('time = "log_time"', 'time = "header.stamp"\nlateness = "200 ms"'):
             with requirements(ROOT / name, clock) as folder:
@@ -90,7 +90,7 @@ def main() -> None:
                 seconds = audited(plan, log), *taken(plan, arrivals)
                 rates = "".join(f"{len(arrivals) / each:>10.0f}/s" for each in seconds)
                 title = f"{name}, {clock.split()[2]}"
-                print(f"{title:40}{len(arrivals):>9}{rates}{owed(folder):>7.0f} ns", flush=True)
+                print(f"{title:40}{len(arrivals):>9}{rates}{pending(folder):>7.0f} ns", flush=True)
 
 
 if __name__ == "__main__":

@@ -27,7 +27,7 @@ class Velocity(NamedTuple):
 ZERO = Velocity()
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Options:
     """The configuration of an interceptor. Times are in ticks of its own timer."""
 
@@ -45,7 +45,7 @@ class Options:
     """The first stop is permanent."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class State:
     """The state of an interceptor."""
 
@@ -61,26 +61,26 @@ class State:
     command_age: int
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class StopHeard:
     """A message of the safety function: a stop request or its release."""
 
     requested: bool
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class CommandHeard:
     """A message of the planner, or of another driver."""
 
     command: Velocity
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class ScanHeard:
     """A message of the sensor, whose contents only the safety function reads."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class TimerRang:
     """A tick of the interceptor's own timer."""
 
@@ -137,7 +137,7 @@ def within(state: State, options: Options) -> bool:
     )
 
 
-def hear_stop(state: State, requested: bool, options: Options) -> tuple[State, Velocity | None]:
+def hear_stop(state: State, requested: bool, options: Options) -> "tuple[State, Velocity | None]":
     """Process a message of the safety function; a stop request publishes zero at once.
 
     pre: within(state, options)
@@ -159,7 +159,7 @@ def hear_stop(state: State, requested: bool, options: Options) -> tuple[State, V
 
 def hear_command(
     state: State, command: Velocity, options: Options
-) -> tuple[State, Velocity | None]:
+) -> "tuple[State, Velocity | None]":
     """Process a command: it is passed on unchanged, or replaced by zero if the robot is halted.
 
     pre: within(state, options)
@@ -174,7 +174,7 @@ def hear_command(
     return after, ZERO if halted(after, options) else command
 
 
-def hear_scan(state: State, options: Options) -> tuple[State, Velocity | None]:
+def hear_scan(state: State, options: Options) -> "tuple[State, Velocity | None]":
     """Process a scan: its age becomes 0.
 
     pre: within(state, options)
@@ -185,7 +185,7 @@ def hear_scan(state: State, options: Options) -> tuple[State, Velocity | None]:
     return replace(state, scan_age=0), None
 
 
-def ring(state: State, options: Options) -> tuple[State, Velocity | None]:
+def ring(state: State, options: Options) -> "tuple[State, Velocity | None]":
     """Process a tick of the timer: ages increase, and `held` decreases.
 
     pre: within(state, options)
@@ -212,8 +212,8 @@ def ring(state: State, options: Options) -> tuple[State, Velocity | None]:
 
 
 def step(
-    state: State, event: StopHeard | CommandHeard | ScanHeard | TimerRang, options: Options
-) -> tuple[State, Velocity | None]:
+    state: State, event: "StopHeard | CommandHeard | ScanHeard | TimerRang", options: Options
+) -> "tuple[State, Velocity | None]":
     """The state after an event, and the published velocity; None: nothing is published.
 
     pre: within(state, options)
@@ -221,12 +221,10 @@ def step(
     post: __return__[0].stop or not (options.latching and state.stop)
     post: __return__[1] is None or __return__[1] is ZERO or not halted(__return__[0], options)
     """
-    match event:
-        case StopHeard(requested):
-            return hear_stop(state, requested, options)
-        case CommandHeard(command):
-            return hear_command(state, command, options)
-        case ScanHeard():
-            return hear_scan(state, options)
-        case TimerRang():
-            return ring(state, options)
+    if isinstance(event, StopHeard):
+        return hear_stop(state, event.requested, options)
+    if isinstance(event, CommandHeard):
+        return hear_command(state, event.command, options)
+    if isinstance(event, ScanHeard):
+        return hear_scan(state, options)
+    return ring(state, options)

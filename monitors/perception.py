@@ -9,9 +9,9 @@ The text of this module is copied into emitted nodes: it needs the standard libr
 from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from monitors.courses import Course, Meaning, Series
 from monitors.kernel.readings import Reading
 from monitors.kernel.verdicts import Truth
+from monitors.proposition_evaluator import PropositionEvaluator, PropositionSpec, Series
 from monitors.samples import Policy, sample
 from monitors.ticking import Ledger, Ticking, is_jump, late
 
@@ -19,21 +19,21 @@ MOST_TICKS = 10_000
 """More ticks than this at once mean that a clock was set forward."""
 
 
-class Setting(NamedTuple):
+class BindingConfig(NamedTuple):
     """The configuration of a node, from the bindings."""
 
-    policies: tuple[Policy, ...]
-    meanings: tuple[Meaning, ...]
+    policies: "tuple[Policy, ...]"
+    meanings: "tuple[PropositionSpec, ...]"
     period: int
     phase: int = 0
     lateness: int = 0
     stamped: bool = False
     """Whether the time of a message is the stamp of its header."""
-    reads: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    reads: "tuple[tuple[str, tuple[str, ...]], ...]" = ()
     """Id of each requirement, and the topics that it reads."""
 
     @property
-    def topics(self) -> tuple[str, ...]:
+    def topics(self) -> "tuple[str, ...]":
         """All topics that are read."""
         return tuple(dict.fromkeys(policy.topic for policy in self.policies))
 
@@ -41,13 +41,13 @@ class Setting(NamedTuple):
 class Perception:
     """Evaluates the propositions at each tick of one run."""
 
-    def __init__(self, setting: Setting) -> None:
+    def __init__(self, setting: BindingConfig) -> None:
         """Start before the first message."""
         self._setting = setting
         self._series = {each.name: Series(each.max_age) for each in setting.policies}
         self._topic = {each.name: each.topic for each in setting.policies}
         self._ticking = Ticking(setting.topics, setting.period, setting.phase)
-        self._courses: dict[str, Course] = {}
+        self._evaluators: dict[str, PropositionEvaluator] = {}
         self._late: dict[str, list[tuple[int, int]]] = {}
         self._start: int | None = None
         """The earliest time of all messages, including late ones."""
@@ -55,13 +55,13 @@ class Perception:
         """The propositions that must be evaluated again because of a late message."""
 
     @property
-    def origin(self) -> int | None:
+    def origin(self) -> "int | None":
         """The time at which the grid of ticks begins; None until it is fixed."""
         return self._ticking.origin
 
     def arrive(
-        self, topic: str, time: int, arrival: int, values: Mapping[str, Reading]
-    ) -> tuple[int, int, tuple[str, ...]] | None:
+        self, topic: str, time: int, arrival: int, values: "Mapping[str, Reading]"
+    ) -> "tuple[int, int, tuple[str, ...]] | None":
         """Process a message, given as a sample of each signal of its topic.
 
         Returns:
@@ -72,7 +72,7 @@ class Perception:
             self._series[name].put(time, value)
         if self._start is None or time < self._start:
             self._start = time
-            self._stale.update(self._courses)
+            self._stale.update(self._evaluators)
         last = self._ticking.last
         judged = last is not None and time <= last
         span = late(time, arrival, self._setting.lateness)
@@ -81,16 +81,16 @@ class Perception:
         readers = tuple(each.name for each in self._setting.meanings if self._reads(each, topic))
         if not judged or last is None:
             self._ticking.arrive(topic, time)
-            for name in self._courses.keys() & readers:
-                self._courses[name].notice(time)
+            for name in self._evaluators.keys() & readers:
+                self._evaluators[name].invalidate_lookahead(time)
             return None
         self._stale.update(readers)
         return time, last, readers
 
-    def _reads(self, meaning: Meaning, topic: str) -> bool:
+    def _reads(self, meaning: PropositionSpec, topic: str) -> bool:
         return any(self._topic[name] == topic for name in meaning.signals)
 
-    def until(self, passed: int) -> list[tuple[int, Mapping[str, Truth]]] | None:
+    def until(self, passed: int) -> "list[tuple[int, Mapping[str, Truth]]] | None":
         """Advance to `passed`: the newly evaluated ticks, as (time, row).
 
         Returns:
@@ -99,18 +99,18 @@ class Perception:
         due, first = self._ticking.due(passed), self._ticking.last is None
         if len(due) > MOST_TICKS:
             return None
-        courses = self._live() if due else {}
+        evaluators = self._live() if due else {}
         ticks = self._ticking.until(passed)
         if not ticks:
             return []
-        rows = self._rows(ticks, courses, first)
+        rows = self._rows(ticks, evaluators, first)
         for series in self._series.values():
             series.forget(ticks[-1] - self._lookback - 1)
         for spans in self._late.values():
             spans[:] = [span for span in spans if span[1] > ticks[-1]]
         return rows
 
-    def glance(self, time: int) -> list[tuple[int, Mapping[str, Truth]]]:
+    def peek(self, time: int) -> "list[tuple[int, Mapping[str, Truth]]]":
         """The rows of the pending ticks and of an additional tick now, without advancing."""
         last, due = self._ticking.last, self._ticking.due(time)
         if last is None and not due:
@@ -119,12 +119,12 @@ class Perception:
         if len(ticks) > MOST_TICKS:
             return []
         if last is None:
-            courses = {name: course.copy() for name, course in self._live().items()}
-            return self._rows(ticks, courses, True)
+            evaluators = {name: evaluator.copy() for name, evaluator in self._live().items()}
+            return self._rows(ticks, evaluators, True)
         live = self._live()
-        sights = [live[each.name].glance(ticks) for each in self._setting.meanings]
+        truths_at_ticks = [live[each.name].peek(ticks) for each in self._setting.meanings]
         return [
-            (tick, self._row(tick, [truths[place] for truths in sights]))
+            (tick, self._row(tick, [truths[place] for truths in truths_at_ticks]))
             for place, tick in enumerate(ticks)
         ]
 
@@ -132,48 +132,50 @@ class Perception:
     def _lookback(self) -> int:
         return max((each.lookback for each in self._setting.meanings), default=0)
 
-    def _live(self) -> Mapping[str, Course]:
+    def _live(self) -> "Mapping[str, PropositionEvaluator]":
         """The evaluators of all propositions, up to date to the last tick."""
         start, last = self._start, self._ticking.last
         assert start is not None, "a tick needs a message"
         for meaning in self._setting.meanings:
             if last is None:  # The start may have changed.
-                self._courses[meaning.name] = Course(meaning, self._series, start)
+                self._evaluators[meaning.name] = PropositionEvaluator(meaning, self._series, start)
             elif meaning.name in self._stale:
                 begin = max(start, last - meaning.lookback - 1)
-                course = self._courses[meaning.name] = Course(meaning, self._series, begin)
-                course.steps(last)
+                evaluator = self._evaluators[meaning.name] = PropositionEvaluator(
+                    meaning, self._series, begin
+                )
+                evaluator.steps(last)
         self._stale.clear()
-        return self._courses
+        return self._evaluators
 
     def _rows(
-        self, ticks: Sequence[int], courses: Mapping[str, Course], first: bool
-    ) -> list[tuple[int, Mapping[str, Truth]]]:
+        self, ticks: "Sequence[int]", evaluators: "Mapping[str, PropositionEvaluator]", first: bool
+    ) -> "list[tuple[int, Mapping[str, Truth]]]":
         rows: list[tuple[int, Mapping[str, Truth]]] = []
         for tick in ticks:
             begun = [self._beginning(each) if first else None for each in self._setting.meanings]
-            sights = [
-                courses[each.name].sight(tick, start)
-                for each, start in zip(self._setting.meanings, begun, strict=True)
+            truths_at_ticks = [
+                evaluators[each.name].value_at_tick(tick, start)
+                for each, start in zip(self._setting.meanings, begun)
             ]
-            rows.append((tick, self._row(tick, sights)))
+            rows.append((tick, self._row(tick, truths_at_ticks)))
             first = False
         return rows
 
-    def _row(self, tick: int, sights: Sequence[Truth]) -> Mapping[str, Truth]:
+    def _row(self, tick: int, truths_at_ticks: "Sequence[Truth]") -> "Mapping[str, Truth]":
         return {
             each.name: None if self._is_late(each, tick) else truth
-            for each, truth in zip(self._setting.meanings, sights, strict=True)
+            for each, truth in zip(self._setting.meanings, truths_at_ticks)
         }
 
-    def _beginning(self, meaning: Meaning) -> tuple[int, int | None]:
+    def _beginning(self, meaning: PropositionSpec) -> "tuple[int, int | None]":
         start = self._start or 0
         series = [self._series[name].times for name in meaning.signals]
         if not all(series):
             return start, None
         return start, max((times[0] for times in series), default=start)
 
-    def _is_late(self, meaning: Meaning, tick: int) -> bool:
+    def _is_late(self, meaning: PropositionSpec, tick: int) -> bool:
         topics = {self._topic[name] for name in meaning.signals}
         return any(a <= tick <= b for topic in topics for a, b in self._late.get(topic, ()))
 
@@ -184,13 +186,13 @@ KEPT = 1000
 """The number of last ticks that a late message can make unknown."""
 
 
-class Judging:
+class OnlineEvaluator:
     """A monitor that is stepped by arriving messages.
 
-    The robot must stop unless `owed` is False.
+    The robot must stop unless `obligation_pending` is False.
     """
 
-    def __init__(self, monitor: Callable[[], Any], setting: Setting) -> None:
+    def __init__(self, monitor: "Callable[[], Any]", setting: BindingConfig) -> None:
         """Start before the first message.
 
         Args:
@@ -212,7 +214,7 @@ class Judging:
         """The last rows evaluated ahead of the ledger, and the open obligations after them."""
 
     def arrive(
-        self, topic: str, time: int, arrival: int, message: Any, singles: Collection[str] = ()
+        self, topic: str, time: int, arrival: int, message: Any, singles: "Collection[str]" = ()
     ) -> None:
         """Process a message.
 
@@ -257,15 +259,15 @@ class Judging:
             self.ledger.advance(time, row)
             self._ahead = None
 
-    def owed(self) -> tuple[Truth, ...]:
+    def obligation_pending(self) -> "tuple[Truth, ...]":
         """For each requirement, whether an obligation is open now; None: unknown.
 
         Messages since the last tick count as if there were a tick now.
         """
         now = max(self._received - self._setting.lateness, *self._latest.values(), 0)
-        rows = [row for _, row in self.perception.glance(now)]
+        rows = [row for _, row in self.perception.peek(now)]
         if not rows:
             return (None,) * len(self.monitor.REQUIREMENTS)
         if self._ahead is None or self._ahead[0] != rows:  # Most messages change nothing.
-            self._ahead = rows, self.monitor.owed_after(rows)
+            self._ahead = rows, self.monitor.obligation_pending_after(rows)
         return self._ahead[1]

@@ -21,33 +21,33 @@ class Policy(NamedTuple):
 
     name: str
     topic: str
-    fields: tuple[str, ...]
-    place: int | None = None
+    fields: "tuple[str, ...]"
+    place: "int | None" = None
     """The index of one element of an array."""
     each: bool = False
     """Whether `reduce` combines all elements of an array into one number."""
     reduce: str = ""
     """`min`, `max` or `outline`."""
-    invalid: tuple[str, str, str, str] = (UNKNOWN,) * 4
+    invalid: "tuple[str, str, str, str]" = (UNKNOWN,) * 4
     """How NaN, +inf, -inf and a finite number outside of `valid` are interpreted."""
-    valid: Callable[[Mapping[str, Reading]], Truth] | None = None
+    valid: "Callable[[Mapping[str, Reading]], Truth] | None" = None
     """Whether an element `x` is a valid measurement; also given the fields `beside`."""
-    quick: Callable[..., list[Reading]] | None = None
+    quick: "Callable[..., list[Reading]] | None" = None
     """The readings of a whole array of floats. Arguments: the array, a function for invalid
     elements, and the fields `beside`, none of which may be unknown."""
-    beside: tuple[str, ...] = ()
-    max_age: int | None = None
-    words: tuple[str, ...] = ()
+    beside: "tuple[str, ...]" = ()
+    max_age: "int | None" = None
+    words: "tuple[str, ...]" = ()
     """The words of an enumerated signal; a sample is the index of its word."""
-    numbers: tuple[int, ...] = ()
+    numbers: "tuple[int, ...]" = ()
     """The numbers of the words in messages; empty: the field holds the words."""
     scale: str = "1"
     """The factor from the field's unit to metres, for `outline`."""
-    footprint: tuple[tuple[float, float], ...] = ()
-    sensor: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    footprint: "tuple[tuple[float, float], ...]" = ()
+    sensor: "tuple[float, float, float]" = (0.0, 0.0, 0.0)
 
 
-def field(message: Any, path: Iterable[str]) -> Any:
+def field(message: Any, path: "Iterable[str]") -> Any:
     """The value of a field of a message.
 
     Raises:
@@ -104,8 +104,8 @@ def _beside(message: Any, name: str) -> Reading:
 
 
 def _elements(
-    policy: Policy, message: Any, values: Iterable[Any], single: bool
-) -> list[Reading] | None:
+    policy: Policy, message: Any, values: "Iterable[Any]", single: bool
+) -> "list[Reading] | None":
     """The readings: infinities for far and near, None if dropped; None for the list if unknown."""
     row: dict[str, Reading] = {name: _beside(message, name) for name in policy.beside}
     if policy.quick and None not in row.values() and {*map(type, values)} <= {float}:
@@ -142,7 +142,7 @@ def _meant(policy: Policy, x: Reading) -> Reading:
     return {DROP: None, FAR: inf, NEAR: -inf}[meaning]
 
 
-def _clearance(policy: Policy, ranges: Sequence[Reading], start: float, step: float) -> float:
+def _clearance(policy: Policy, ranges: "Sequence[Reading]", start: float, step: float) -> float:
     """The distance in metres between the footprint and the nearest scan point."""
     if -inf in ranges:
         return 0.0
@@ -163,7 +163,7 @@ def _clearance(policy: Policy, ranges: Sequence[Reading], start: float, step: fl
     return least
 
 
-def _gap(x: float, y: float, corners: Sequence[tuple[float, float]]) -> float:
+def _gap(x: float, y: float, corners: "Sequence[tuple[float, float]]") -> float:
     """The distance from a point to a polygon; 0 inside."""
     inside, least = False, inf
     for place, (x1, y1) in enumerate(corners):

@@ -23,6 +23,11 @@ _MODULES = ("verdicts", "columns", "listings", "stepping", "outcomes", "tables",
 """The modules of `monitors.kernel`, each after the modules that it imports."""
 _VARIABLES = ("readings", "variables", "variable_tables", "variable_command")
 """The additional modules of a monitor that is stepped by variables."""
+_LIVE = (
+    *("kernel/verdicts", "kernel/readings", "samples", "proposition_evaluator", "ticking"),
+    *("perception", "stop_supervisor", "status_publisher"),
+)
+"""The modules that a live node needs in addition to its monitor."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,8 +60,7 @@ def interceptor() -> Runtime:
 @cache
 def perception() -> Runtime:
     """The modules that a live node needs in addition to its monitor."""
-    needed = "kernel/verdicts kernel/readings samples courses ticking perception guard voice"
-    return _joined(_ROOM, needed.split())
+    return _joined(_ROOM, _LIVE)
 
 
 def _joined(folder: Path, modules: Sequence[str]) -> Runtime:

@@ -45,7 +45,7 @@ JUMP = 10**9
 """Nanoseconds; if a time goes back by more than this, a clock was set."""
 
 
-def origin(start: int, firsts: Iterable[int], period: int) -> int:
+def origin(start: int, firsts: "Iterable[int]", period: int) -> int:
     """The time at which the grid begins at phase 0.
 
     Args:
@@ -57,13 +57,13 @@ def origin(start: int, firsts: Iterable[int], period: int) -> int:
     return last if 0 <= last - start < period else start
 
 
-def late(time: int, arrival: int, lateness: int) -> tuple[int, int] | None:
+def late(time: int, arrival: int, lateness: int) -> "tuple[int, int] | None":
     """The first and last time of ticks that miss a late message; None if it is in time."""
     last = arrival - lateness - 1
     return (time, last) if time <= last else None
 
 
-def is_jump(latest: int | None, time: int) -> bool:
+def is_jump(latest: "int | None", time: int) -> bool:
     """Whether a topic's clock was set back, given its latest time so far."""
     return latest is not None and time < latest - JUMP
 
@@ -77,10 +77,10 @@ class Ticking:
 
     def __init__(
         self,
-        topics: Collection[str],
-        period: int | None,
+        topics: "Collection[str]",
+        period: "int | None",
         phase: int = 0,
-        clock: str | None = None,
+        clock: "str | None" = None,
     ) -> None:
         """Start before the first message.
 
@@ -109,12 +109,12 @@ class Ticking:
             self._clock_times.insert(bisect_right(self._clock_times, time), time)
 
     @property
-    def start(self) -> int | None:
+    def start(self) -> "int | None":
         """The earliest time of all messages so far."""
         return min(self._firsts.values(), default=None)
 
     @property
-    def waiting(self) -> tuple[str, ...]:
+    def waiting(self) -> "tuple[str, ...]":
         """The topics without a message that prevent the grid from being fixed."""
         if self._period is None or self.last is not None:
             return ()
@@ -123,27 +123,27 @@ class Ticking:
             return ()
         return tuple(sorted(self._topics - begun.keys()))
 
-    def due(self, passed: int) -> Sequence[int]:
+    def due(self, passed: int) -> "Sequence[int]":
         """The times of the ticks before `passed` that are not evaluated yet."""
         return self._before(max(passed, self.passed), ended=False)
 
-    def until(self, passed: int) -> Sequence[int]:
+    def until(self, passed: int) -> "Sequence[int]":
         """Advance to `passed`; the times of the ticks that are evaluated now."""
         times = self.due(passed)
         self.passed = max(passed, self.passed)
         return self._judged(times)
 
-    def ending(self, end: int) -> Sequence[int]:
+    def ending(self, end: int) -> "Sequence[int]":
         """The remaining ticks if the log ended at `end`, without advancing."""
         return self._before(max(end + 1, self.passed), ended=True)
 
-    def end(self, end: int) -> Sequence[int]:
+    def end(self, end: int) -> "Sequence[int]":
         """The remaining ticks of a log that ends at `end`."""
         times = self.ending(end)
         self.passed = max(end + 1, self.passed)
         return self._judged(times)
 
-    def _judged(self, times: Sequence[int]) -> Sequence[int]:
+    def _judged(self, times: "Sequence[int]") -> "Sequence[int]":
         if not times:
             return times
         if self.last is None and self._period is not None:
@@ -152,7 +152,7 @@ class Ticking:
         del self._clock_times[: bisect_right(self._clock_times, self.last)]
         return times
 
-    def _before(self, passed: int, *, ended: bool) -> Sequence[int]:
+    def _before(self, passed: int, *, ended: bool) -> "Sequence[int]":
         if self._period is None:
             return self._clock_times[: bisect_left(self._clock_times, passed)]
         if self.last is not None:
@@ -160,11 +160,11 @@ class Ticking:
         found = self._origin(passed, ended=ended)
         return range(0) if found is None else range(found + self._phase, passed, self._period)
 
-    def _begun(self, passed: int) -> dict[str, int]:
+    def _begun(self, passed: int) -> "dict[str, int]":
         """Topic that began before `passed` -> the time of its first message."""
         return {topic: first for topic, first in self._firsts.items() if first < passed}
 
-    def _origin(self, passed: int, *, ended: bool) -> int | None:
+    def _origin(self, passed: int, *, ended: bool) -> "int | None":
         """The time at which the grid begins; None while later messages can change it.
 
         A topic that has not begun can move it back to the start of the log, and, less than a period
@@ -183,20 +183,20 @@ class Ticking:
 class Steppable(Protocol):
     """The interface of a monitor that a ledger uses."""
 
-    def advance(self, rows: Sequence[Mapping[str, Any]]) -> object:
+    def advance(self, rows: "Sequence[Mapping[str, Any]]") -> object:
         """Step over rows, each with the truth of propositions at one tick."""
 
-    def state(self) -> Mapping[str, Any]:
+    def state(self) -> "Mapping[str, Any]":
         """The complete state."""
 
-    def restore(self, state: Mapping[str, Any], /) -> object:
+    def restore(self, state: "Mapping[str, Any]", /) -> object:
         """Restore a state."""
 
 
 class Ledger:
     """Steps monitors, and steps them again if earlier ticks become unknown."""
 
-    def __init__(self, monitors: Sequence[Steppable], kept: int = 0) -> None:
+    def __init__(self, monitors: "Sequence[Steppable]", kept: int = 0) -> None:
         """Start before the first tick.
 
         Args:
@@ -229,23 +229,23 @@ class Ledger:
         return self._dropped_late + len(self._late)
 
     @property
-    def last(self) -> Mapping[str, bool | None] | None:
+    def last(self) -> "Mapping[str, bool | None] | None":
         """The row of the last tick."""
         return self._rows[-1] if self._rows else None
 
-    def row(self, tick: int) -> Mapping[str, bool | None]:
+    def row(self, tick: int) -> "Mapping[str, bool | None]":
         """The row of a kept tick."""
         return self._rows[tick - self._dropped]
 
-    def time(self, tick: int) -> int | None:
+    def time(self, tick: int) -> "int | None":
         """The time of a tick; None if it was dropped."""
         place = tick - self._dropped
         return self._times[place] if 0 <= place < len(self._times) else None
 
-    def _state(self) -> tuple[Mapping[str, Any], ...]:
+    def _state(self) -> "tuple[Mapping[str, Any], ...]":
         return tuple(monitor.state() for monitor in self._monitors)
 
-    def advance(self, time: int, row: Mapping[str, bool | None]) -> None:
+    def advance(self, time: int, row: "Mapping[str, bool | None]") -> None:
         """Step all monitors by one tick."""
         if len(self._rows) - self._states[-1][0] >= _APART:
             self._states.append((len(self._rows), self._state()))
@@ -255,7 +255,7 @@ class Ledger:
         for monitor in self._monitors:
             monitor.advance((row,))
 
-    def withdraw(self, first: int, last: int, propositions: Collection[str]) -> int:
+    def withdraw(self, first: int, last: int, propositions: "Collection[str]") -> int:
         """Make propositions unknown at the ticks from `first` to `last`, as given by `late`.
 
         Returns:
@@ -276,7 +276,7 @@ class Ledger:
         self._late.update(self._times[i] for i in changed)
         return len(changed)
 
-    def insert(self, time: int, propositions: Collection[str]) -> None:
+    def insert(self, time: int, propositions: "Collection[str]") -> None:
         """Insert a tick among the evaluated ones, or after them, with all propositions unknown.
 
         Args:
@@ -297,7 +297,7 @@ class Ledger:
         while self._states[-1][0] > place:
             self._states.pop()
         begin, states = self._states[-1]
-        for monitor, state in zip(self._monitors, states, strict=True):
+        for monitor, state in zip(self._monitors, states):
             monitor.restore(state)
             monitor.advance(self._rows[begin:])
 

@@ -33,9 +33,9 @@ class Reading(NamedTuple):
     violated: bool
     failed: bool
     trigger: bool
-    breach: bool
+    violation: bool
     open: bool
-    settled: bool
+    satisfied_forever: bool
     answer: bool
 
 
@@ -46,7 +46,7 @@ class Outcome(NamedTuple):
     possible: Reading
     verdict: str
     finite: Truth
-    owed: Truth
+    obligation_pending: Truth
 
 
 VERDICTS = ("pending", "satisfied", "violated")
@@ -161,7 +161,7 @@ static void put_word(size_t word)
 static void put_reading(const fretc_reading *r)
 {{
     const uint8_t bits[7] = {{
-        r->violated, r->failed, r->trigger, r->breach, r->open, r->settled, r->answer
+        r->violated, r->failed, r->trigger, r->violation, r->open, r->satisfied_forever, r->answer
     }};
     (void)fwrite(&r->left, sizeof r->left, 1, stdout);
     (void)fwrite(bits, 1, 7, stdout);
@@ -173,7 +173,7 @@ static void put(const fretc_outcome *o)
     put_reading(&o->possible);
     (void)putchar((int)o->verdict);
     (void)putchar(o->finite);
-    (void)putchar(o->owed);
+    (void)putchar(o->obligation_pending);
 }}
 
 {"".join(_runner(i, each) for i, each in enumerate(sources))}
@@ -229,7 +229,7 @@ def of_python(machine: Monitor, rows: Rows) -> Iterator[list[Outcome]]:
             for rail in (machine.must, machine.may)
         ]
         yield [
-            Outcome(certain, possible, str(verdict), standing.finite, standing.owed)
+            Outcome(certain, possible, str(verdict), standing.finite, standing.obligation_pending)
             for certain, possible, verdict, standing in zip(
                 *rails, verdicts, standings, strict=True
             )
@@ -238,15 +238,15 @@ def of_python(machine: Monitor, rows: Rows) -> Iterator[list[Outcome]]:
 
 def _reading(requirement: Requirement, signals: Signals[bool], marks: Marks, tick: int) -> Reading:
     left = -1
-    if marks.open >= 0 and requirement.horizon is not None:
-        left = max(-1, marks.open + requirement.horizon - tick)
+    if marks.open >= 0 and requirement.deadline_ticks is not None:
+        left = max(-1, marks.open + requirement.deadline_ticks - tick)
     return Reading(
         left,
         marks.violated >= 0,
-        marks.broken >= 0 or signals.fails,
+        marks.broken >= 0 or signals.violated_if_ended,
         signals.trigger,
-        signals.breach,
-        signals.owed,
-        signals.settled,
+        signals.violation,
+        signals.obligation_pending,
+        signals.satisfied_forever,
         signals.answer,
     )

@@ -202,17 +202,18 @@ def _outcome(tick: int, told: dict[str, Any]) -> c_monitors.Outcome:
         possible._replace(failed=failed[1]),
         told["verdict"],
         told["finite"],
-        told["owed"],
+        told["obligationPending"],
     )
 
 
 def _reading(tick: int, told: dict[str, Any]) -> Reading:
     left = -1 if told["deadline"] is None else max(-1, told["deadline"] - tick)
-    trigger, breach, is_open, settled, answer = (
-        told[name] for name in ("trigger", "breach", "owed", "settled", "answer")
+    trigger, violation, is_open, satisfied_forever, answer = (
+        told[name]
+        for name in ("trigger", "violation", "obligationPending", "satisfiedForever", "answer")
     )
     violated = told["firstViolation"] is not None
-    return Reading(left, violated, False, trigger, breach, is_open, settled, answer)
+    return Reading(left, violated, False, trigger, violation, is_open, satisfied_forever, answer)
 
 
 C = Tongue(

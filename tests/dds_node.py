@@ -37,7 +37,7 @@ def settled(ledger: Any, first: int, last: int) -> list[object]:
 def main(folder: str, singles: str) -> None:
     """Listen until the end."""
     live, monitors = (loaded(Path(folder, name)) for name in ("perception.py", "monitors.py"))
-    node = live.Judging(monitors.MONITOR, live.SETTING)
+    node = live.OnlineEvaluator(monitors.MONITOR, live.SETTING)
     source, left, latest = Dds(), set(live.SETTING.topics), 0
     rows: list[object] = []
     for item in source.arrivals(live.SETTING.topics):

@@ -125,7 +125,7 @@ class _Demand:
                 return inside and self.s[k] and not any(q[t:k])  # at each stop
 
     @property
-    def horizon(self) -> int | None:
+    def deadline_ticks(self) -> int | None:
         """Ticks up to the last one that decides it."""
         counted = {"immediately": 0, "next": 1, "within": self.n, "for": self.n}
         return counted.get(self.timing, self.n + 1 if "after" in self.timing else None)
@@ -134,7 +134,11 @@ class _Demand:
         """The first response, where it waits for one, up to the deadline."""
         if self.timing not in ("null", "eventually", "within", "after"):
             return
-        end = self.right if self.horizon is None else min(self.right, self.t + self.horizon)
+        end = (
+            self.right
+            if self.deadline_ticks is None
+            else min(self.right, self.t + self.deadline_ticks)
+        )
         first = next((k for k in range(self.t, end + 1) if self.q[k]), None)
         if first is not None:
             yield self.t, first
@@ -147,15 +151,15 @@ class _Demand:
         waited = self.last - self.t
         match self.timing:
             case "next" | "for":
-                return self.horizon is not None and waited < self.horizon
+                return self.deadline_ticks is not None and waited < self.deadline_ticks
             case "finally":
                 return True
             case "null" | "eventually":
                 return silent
             case "within" | "after" | "not after":
-                return silent and self.horizon is not None and waited < self.horizon
+                return silent and self.deadline_ticks is not None and waited < self.deadline_ticks
             case _:
                 return False
 
     def as_open(self) -> tuple[int, int | None]:
-        return self.t, None if self.horizon is None else self.t + self.horizon
+        return self.t, None if self.deadline_ticks is None else self.t + self.deadline_ticks

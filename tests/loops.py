@@ -48,3 +48,30 @@ def edited(text: str, old: str, new: str) -> str:
     """The text with its one place of `old` changed."""
     assert text.count(old) == 1, (text.count(old), old)
     return text.replace(old, new)
+
+
+def with_match(text: str) -> str:
+    """An interceptor whose core has `match`, as a core of one's own may have."""
+    return edited(
+        text,
+        """\
+    if isinstance(event, StopHeard):
+        return hear_stop(state, event.requested, options)
+    if isinstance(event, CommandHeard):
+        return hear_command(state, event.command, options)
+    if isinstance(event, ScanHeard):
+        return hear_scan(state, options)
+    return ring(state, options)
+""",
+        """\
+    match event:
+        case StopHeard(requested):
+            return hear_stop(state, requested, options)
+        case CommandHeard(command):
+            return hear_command(state, command, options)
+        case ScanHeard():
+            return hear_scan(state, options)
+        case TimerRang():
+            return ring(state, options)
+""",
+    )

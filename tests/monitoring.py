@@ -38,11 +38,11 @@ class Step(NamedTuple):
     finite: Truth
     first_violation: int | None
     trigger: Truth
-    breach: Truth
-    doom: Truth
-    owed: Truth
-    fails: Truth
-    settled: Truth
+    violation: Truth
+    violation_inevitable: Truth
+    obligation_pending: Truth
+    violated_if_ended: Truth
+    satisfied_forever: Truth
     answer: Truth
 
 

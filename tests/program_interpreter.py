@@ -90,14 +90,18 @@ def step(program: Program, state: State, row: Mapping[str, Truth], doubt: bool =
 
 def _marked(requirement: RequirementProgram, before: Marks, now: Signals[bool], tick: int) -> Marks:
     """The marks after a tick with these signals."""
-    broken = tick if before.broken < 0 and now.breach else before.broken
-    doomed = tick if before.doomed < 0 and now.doom else before.doomed
+    broken = tick if before.broken < 0 and now.violation else before.broken
+    inevitable = (
+        tick
+        if before.violation_inevitable < 0 and now.violation_inevitable
+        else before.violation_inevitable
+    )
     last = tick if now.trigger else before.last
-    if not now.owed:
-        return Marks(broken, doomed, last, -1)
+    if not now.obligation_pending:
+        return Marks(broken, inevitable, last, -1)
     if requirement.renewed:
-        return Marks(broken, doomed, last, last)
-    return Marks(broken, doomed, last, tick if before.open < 0 else before.open)
+        return Marks(broken, inevitable, last, last)
+    return Marks(broken, inevitable, last, tick if before.open < 0 else before.open)
 
 
 @dataclass(frozen=True)

@@ -44,6 +44,7 @@ PROGRAMS = {
     "make": "apt-get install make",
     "nm": "apt-get install binutils",
     "node": "apt-get install nodejs",
+    "npm": "apt-get install npm",
     "rosbag": "apt-get install python3-rosbag",
     "roslaunch": "apt-get install python3-roslaunch",
     "rustc": "apt-get install rustc",

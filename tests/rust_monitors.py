@@ -91,12 +91,13 @@ macro_rules! put {{
         let o = $o;
         for r in [o.certain, o.possible] {{
             $out.extend(r.left.map_or(-1, |left| left as i32).to_ne_bytes());
-            let bits = [r.violated, r.failed, r.trigger, r.breach, r.open, r.settled, r.answer];
-            $out.extend(bits.map(u8::from));
+            let signals = [r.trigger, r.violation, r.open, r.satisfied_forever, r.answer];
+            $out.extend([r.violated, r.failed].map(u8::from));
+            $out.extend(signals.map(u8::from));
         }}
         $out.push(o.verdict as u8);
         $out.push(o.finite.map_or(2, u8::from));
-        $out.push(o.owed.map_or(2, u8::from));
+        $out.push(o.obligation_pending.map_or(2, u8::from));
     }}}};
 }}
 

@@ -11,7 +11,7 @@ typedef enum { PENDING, SATISFIED, VIOLATED } verdict_t;
 typedef struct {
     int32_t left; /* ticks to the deadline of the open demand; -1: none */
     bool trigger;
-    bool breach;
+    bool violation;
     bool open;
     bool answer;
     bool finite; /* not violated, if the run ends here */
@@ -45,7 +45,7 @@ static inline void w1_step(w1_t *s, bool a, bool b, outcome_t *out)
     s->open = (s->open || a) && !b;
     out->left = -1;
     out->trigger = a;
-    out->breach = false;
+    out->violation = false;
     out->open = s->open;
     out->answer = b;
     out->finite = !s->open;
@@ -70,9 +70,9 @@ static inline void w2_step(w2_t *s, bool a, bool b, int32_t bound, outcome_t *ou
         s->age = 0;
     }
     out->open = s->age >= 0;
-    out->breach = s->age >= bound;
+    out->violation = s->age >= bound;
     out->left = (out->open && s->age <= bound) ? bound - s->age : -1;
-    s->broken = s->broken || out->breach;
+    s->broken = s->broken || out->violation;
     out->trigger = a;
     out->answer = b;
     out->finite = !s->broken;
@@ -94,10 +94,10 @@ static inline void w3_step(w3_t *s, bool a, bool b, int32_t bound, outcome_t *ou
     }
     out->left = -1;
     out->trigger = a;
-    out->breach = a && s->age > bound;
+    out->violation = a && s->age > bound;
     out->open = false;
     out->answer = false;
-    s->broken = s->broken || out->breach;
+    s->broken = s->broken || out->violation;
     out->finite = !s->broken;
     out->verdict = s->broken ? VIOLATED : PENDING;
 }
@@ -114,11 +114,11 @@ static inline void w4_step(w4_t *s, bool a, bool b, bool c, outcome_t *out)
     s->since = b || (!c && s->since);
     out->left = -1;
     out->trigger = a && !s->a_before;
-    out->breach = out->trigger && !s->since;
+    out->violation = out->trigger && !s->since;
     out->open = false;
     out->answer = false;
     s->a_before = a;
-    s->broken = s->broken || out->breach;
+    s->broken = s->broken || out->violation;
     out->finite = !s->broken;
     out->verdict = s->broken ? VIOLATED : PENDING;
 }

@@ -1,9 +1,9 @@
 """Whether any run can violate a requirement; if none can, `satisfied` has little meaning.
 
-A run violates if no endless continuation satisfies the sentence any more (`breach` or `doom` of its
-monitor), or if it ends with an open demand and the clock declares that a violation. Source: Alpern,
-Schneider, Defining liveness, Information Processing Letters 21 (1985): a property that no finite
-run can violate is a liveness property.
+A run violates if no endless continuation satisfies the sentence any more (`violation` or
+`violation_inevitable` of its monitor), or if it ends with an open demand and the clock declares
+that a violation. Source: Alpern, Schneider, Defining liveness, Information Processing Letters 21
+(1985): a property that no finite run can violate is a liveness property.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ def is_violable(requirement: FormalizedRequirement) -> bool:
     if (
         requirement.clock is not None
         and requirement.clock.end is End.VIOLATED
-        and watch.owed != FALSE
+        and watch.obligation_pending != FALSE
     ):
         return True
-    if watch.breach == FALSE and watch.doom == FALSE:
+    if watch.violation == FALSE and watch.violation_inevitable == FALSE:
         return False
     return _is_lost_somewhere(requirement)
 
@@ -36,7 +36,7 @@ def limit(requirement: FormalizedRequirement) -> str:
     """The reason why no run can violate the requirement, as one sentence; empty if a run can."""
     if is_violable(requirement):
         return ""
-    if requirement.watch.owed == FALSE:
+    if requirement.watch.obligation_pending == FALSE:
         return f"No run can violate {requirement.id}: every run satisfies it."
     return (
         f"No run can violate {requirement.id}: it sets no bound, so an answer that has not come "

@@ -54,7 +54,11 @@ def anticipated(sentence: s.Sentence, obligation: Obligation, watch: MonitorSpec
     observables = tuple(_observables(obligation, automaton))
     lost = _formula(automaton, observables, "violated")
     safe = _formula(automaton, observables, "satisfied")
-    return replace(watch, doom=_more(watch.doom, lost), settled=_more(watch.settled, safe))
+    return replace(
+        watch,
+        violation_inevitable=_more(watch.violation_inevitable, lost),
+        satisfied_forever=_more(watch.satisfied_forever, safe),
+    )
 
 
 def _more(given: f.Formula, derived: f.Formula) -> f.Formula:

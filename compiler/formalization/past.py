@@ -45,24 +45,24 @@ class MonitorSpec:
     """One sentence as signals over past-time formulas, for a monitor.
 
     The trace up to a tick satisfies the sentence, as FRET's finite semantics has it, when
-    `breach` was true at no tick up to there and `fails` is not true there.
+    `violation` was true at no tick up to there and `violated_if_ended` is not true there.
     """
 
     trigger: Formula
     """A demand begins at this tick."""
-    breach: Formula
+    violation: Formula
     """A demand is broken at this tick, and nothing later can repair it."""
-    doom: Formula
+    violation_inevitable: Formula
     """Open demands that no endless trace can meet, though none of them is broken yet."""
-    owed: Formula
+    obligation_pending: Formula
     """A demand is open: later ticks decide it, unless a demand was broken before."""
-    fails: Formula
+    violated_if_ended: Formula
     """The trace violates the sentence if it ends at this tick, though nothing is broken yet."""
-    settled: Formula
+    satisfied_forever: Formula
     """No continuation on an infinite trace can break a demand, unless one was broken before."""
     answer: Formula | None
     """The response that meets a demand, if a demand waits for one."""
-    horizon: int | None
+    deadline_ticks: int | None
     """Ticks from a trigger to its deadline; None if there is no deadline."""
     renewed: bool
     """A trigger replaces the demand of the trigger before it: only the latest one is open."""
@@ -72,11 +72,11 @@ class MonitorSpec:
         """The signals that a monitor reports at each tick."""
         return Signals(
             self.trigger,
-            self.breach,
-            self.doom,
-            self.owed,
-            self.fails,
-            self.settled,
+            self.violation,
+            self.violation_inevitable,
+            self.obligation_pending,
+            self.violated_if_ended,
+            self.satisfied_forever,
             self.answer if self.answer is not None else FALSE,
         )
 
@@ -117,24 +117,26 @@ def past(obligation: Obligation) -> Formula:
     """The formula about the trace up to now, in FRET's operators."""
     stage, demand = scope_formulas(obligation), obligation.demand
     broken = or_(_broken_plainly(demand, stage), _broken_at_end(demand, stage))
-    return and_(historically(_unless(broken)), _unless(_fails(demand, stage)))
+    return and_(historically(_unless(broken)), _unless(_violated_if_ended(demand, stage)))
 
 
 def monitor_spec(obligation: Obligation) -> MonitorSpec:
     """The signals of a monitor; counting operators look back from now, never from a deadline."""
     stage, demand = scope_formulas(obligation), obligation.demand
-    breach = or_(_broken(demand, stage), _broken_at_end(demand, stage))
-    owed, fails = _owed(demand, stage), _fails(demand, stage)
+    violation = or_(_broken(demand, stage), _broken_at_end(demand, stage))
+    pending, ended = _obligation_pending(demand, stage), _violated_if_ended(demand, stage)
     traits = TRAITS[demand.kind]
     return MonitorSpec(
         trigger=stage.trigger,
-        breach=breach,
-        doom=_doom(demand, stage),
-        owed=owed,
-        fails=fails,
-        settled=TRUE if breach == owed == fails == FALSE else _settled(demand, stage),
+        violation=violation,
+        violation_inevitable=_violation_inevitable(demand, stage),
+        obligation_pending=pending,
+        violated_if_ended=ended,
+        satisfied_forever=TRUE
+        if violation == pending == ended == FALSE
+        else _satisfied_forever(demand, stage),
         answer=and_(stage.inside, demand.response) if Trait.WAITS in traits else None,
-        horizon=_horizon(demand),
+        deadline_ticks=_deadline_ticks(demand),
         renewed=Trait.RENEWED in traits,
     )
 
@@ -296,10 +298,10 @@ def _broken_at_end(demand: Demand, stage: ScopeFormulas) -> Formula:
     """The interval is over, and its last tick left a demand unmet."""
     if stage.leaves == FALSE:
         return FALSE
-    return and_(stage.leaves, previous(_fails(demand, stage)))
+    return and_(stage.leaves, previous(_violated_if_ended(demand, stage)))
 
 
-def _fails(demand: Demand, stage: ScopeFormulas) -> Formula:
+def _violated_if_ended(demand: Demand, stage: ScopeFormulas) -> Formula:
     """The interval may not end here."""
     match demand.kind:
         case ObligationKind.FINALLY:
@@ -321,7 +323,7 @@ def _fails(demand: Demand, stage: ScopeFormulas) -> Formula:
             assert_never(demand.kind)
 
 
-def _owed(demand: Demand, stage: ScopeFormulas) -> Formula:
+def _obligation_pending(demand: Demand, stage: ScopeFormulas) -> Formula:
     """A demand waits for what follows.
 
     Demands without a deadline that only forbid (`always`, `until`, `before`) wait for nothing:
@@ -352,7 +354,7 @@ def _owed(demand: Demand, stage: ScopeFormulas) -> Formula:
             assert_never(demand.kind)
 
 
-def _doom(demand: Demand, stage: ScopeFormulas) -> Formula:
+def _violation_inevitable(demand: Demand, stage: ScopeFormulas) -> Formula:
     """Demands are open that cannot all be met.
 
     Where an interval can end before the deadline, its end would void them.
@@ -383,7 +385,7 @@ def _doom(demand: Demand, stage: ScopeFormulas) -> Formula:
             assert_never(demand.kind)
 
 
-def _settled(demand: Demand, stage: ScopeFormulas) -> Formula:
+def _satisfied_forever(demand: Demand, stage: ScopeFormulas) -> Formula:
     """Every demand has been met, and no other can begin."""
     if Trait.LAST in TRAITS[demand.kind] and stage.endless:
         return TRUE  # an interval without an end has no last tick
@@ -414,7 +416,7 @@ def _met(demand: Demand, stage: ScopeFormulas) -> Formula:
             assert_never(demand.kind)
 
 
-def _horizon(demand: Demand) -> int | None:
+def _deadline_ticks(demand: Demand) -> int | None:
     match demand.kind:
         case ObligationKind.IMMEDIATELY:
             return 0

@@ -34,9 +34,9 @@ def lengthened(program: Program, clocks: Mapping[str, str]) -> Program:
     """
     most: dict[str, int] = {}
     for requirement in program.requirements:
-        if requirement.id in clocks and requirement.horizon is not None:
+        if requirement.id in clocks and requirement.deadline_ticks is not None:
             counter = clocks[requirement.id]
-            most[counter] = max(most.get(counter, 0), requirement.horizon + 1)
+            most[counter] = max(most.get(counter, 0), requirement.deadline_ticks + 1)
     cells = tuple(
         replace(cell, most=max(cell.most, most[cell.name]))
         if isinstance(cell, Counter) and cell.name in most
@@ -51,10 +51,14 @@ def lengthened(program: Program, clocks: Mapping[str, str]) -> Program:
 
 
 def _clock(requirement: RequirementProgram, blocks: Mapping[str, Block]) -> str | None:
-    owed = requirement.signals.owed
-    if requirement.horizon is None or requirement.renewed or not isinstance(owed, Variable):
+    pending = requirement.signals.obligation_pending
+    if (
+        requirement.deadline_ticks is None
+        or requirement.renewed
+        or not isinstance(pending, Variable)
+    ):
         return None
-    match blocks[owed.name].instructions:
+    match blocks[pending.name].instructions:
         case (Assign(_, Age(counter, Comparison.AT_LEAST, 0)),) if _starts_once(blocks[counter]):
             return counter
         case _:

@@ -59,7 +59,7 @@ def program(watches: Mapping[str, MonitorSpec], taken: Collection[str] = ()) -> 
     """
     writer = _FormulaLowering(frozenset(taken))
     requirements = tuple(
-        RequirementProgram(id, Signals(*map(writer.value, w.signals)), w.horizon, w.renewed)
+        RequirementProgram(id, Signals(*map(writer.value, w.signals)), w.deadline_ticks, w.renewed)
         for id, w in watches.items()
     )
     return Program(

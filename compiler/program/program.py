@@ -18,7 +18,9 @@ from monitors.kernel.verdicts import Signals
 
 SIGNALS, MARKS = Signals._fields, Marks._fields
 """The signals of a program, and the ticks that it remembers, for each requirement."""
-SOURCES: Mapping[str, str] = dict(zip(MARKS, ("breach", "doom", "trigger", "owed"), strict=True))
+SOURCES: Mapping[str, str] = dict(
+    zip(MARKS, ("violation", "violation_inevitable", "trigger", "obligation_pending"), strict=True)
+)
 """The signal whose tick each mark remembers."""
 
 
@@ -74,7 +76,7 @@ class RequirementProgram:
 
     id: str
     signals: Signals[Value]
-    horizon: int | None
+    deadline_ticks: int | None
     """Ticks from a trigger to its deadline; None: there is no deadline."""
     renewed: bool
     """A trigger replaces the demand of the trigger before it."""

@@ -75,10 +75,10 @@ class StatementGroup:
 
 @dataclass(frozen=True, slots=True)
 class Deadline:
-    """The ticks left of an open demand: `horizon` less the counter, unless that is negative."""
+    """The ticks left of an open demand: `deadline_ticks` less the counter, if not negative."""
 
     counter: str
-    horizon: int
+    deadline_ticks: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -232,18 +232,21 @@ def _mark_cells(
     """
     signals, cells, steps = requirement.signals, list[Cell](), list[Step]()
     latches: dict[str, Value] = {}
-    for name, signal in (("broken", signals.breach), ("doomed", signals.doom)):
-        flag = StoredFlag(f"{prefix}_{name}", False, f"{requirement.id} was {name} up to here")
+    for name, signal, state in (
+        ("broken", signals.violation, "violated"),
+        ("violation_inevitable", signals.violation_inevitable, "bound to be violated"),
+    ):
+        flag = StoredFlag(f"{prefix}_{name}", False, f"{requirement.id} was {state} up to here")
         latches[name] = Variable(flag.name) if signal != FALSE else FALSE
         if signal != FALSE:
             cells.append(flag)
             steps.append(Assign(flag.name, or_([Variable(flag.name), signal])))
     deadline = None
-    if requirement.horizon is not None and clock is not None:
-        deadline = Deadline(clock, requirement.horizon)
-    elif requirement.horizon is not None and signals.owed != FALSE:
-        deadline = Deadline(f"{prefix}_age", requirement.horizon)
-        most, none = requirement.horizon + 1, SetCounter(deadline.counter, -1)
+    if requirement.deadline_ticks is not None and clock is not None:
+        deadline = Deadline(clock, requirement.deadline_ticks)
+    elif requirement.deadline_ticks is not None and signals.obligation_pending != FALSE:
+        deadline = Deadline(f"{prefix}_age", requirement.deadline_ticks)
+        most, none = requirement.deadline_ticks + 1, SetCounter(deadline.counter, -1)
         note = f"ticks since the trigger of the open demand of {requirement.id}; -1: none"
         cells.append(Counter(deadline.counter, -1, -1, most, note))
         grown = Advance(deadline.counter, most)
@@ -252,14 +255,14 @@ def _mark_cells(
             born = SetCounter(deadline.counter, 0)
             steps.append(Choose(((signals.trigger, born), (open_, grown)), none))
         else:
-            steps.append(Choose(((signals.owed, grown),), none))
+            steps.append(Choose(((signals.obligation_pending, grown),), none))
     truths = {
         "violated": or_(latches.values()),
-        "failed": or_([latches["broken"], signals.fails]),
+        "failed": or_([latches["broken"], signals.violated_if_ended]),
         "trigger": signals.trigger,
-        "breach": signals.breach,
-        "open": signals.owed,
-        "settled": signals.settled,
+        "violation": signals.violation,
+        "open": signals.obligation_pending,
+        "satisfied_forever": signals.satisfied_forever,
         "answer": signals.answer,
     }
     stage = StatementGroup(f"{requirement.id}: what is remembered", tuple(steps))

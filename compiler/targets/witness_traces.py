@@ -79,7 +79,7 @@ def _runs(counted: Automaton) -> Iterator[tuple[str, tuple[int, ...]]]:
                 run_to.setdefault(after, run)
             elif broken is None or len(run) < len(broken):
                 broken = run
-    yield from ([("soonest_breach", broken)] if broken else [])
+    yield from ([("soonest_violation", broken)] if broken else [])
     runs: dict[tuple[str, bool], tuple[int, ...]] = {}
     for state, run in run_to.items():
         if run:

@@ -164,16 +164,16 @@ def _begun(requirement: FormalizedRequirement, alphabet: Alphabet, play: GameTra
     """Tick at which the obligation began that is open at the last tick, or None."""
     if requirement.sentence.condition is None:
         return None
-    signals = (requirement.watch.trigger, requirement.watch.owed)
+    signals = (requirement.watch.trigger, requirement.watch.obligation_pending)
     atoms = dict.fromkeys(name for signal in signals for name in f.atoms(signal))
     known = columns(alphabet, play.runs, atoms)
     ticks = play.ticks
-    trigger, owed = (evaluate(signal, known, ticks) for signal in signals)
+    trigger, obligation_pending = (evaluate(signal, known, ticks) for signal in signals)
     if (
         Trait.FORBIDS in TRAITS[requirement.demanded.demand.kind]
     ):  # The open obligation is that of the newest trigger.
         return trigger.bit_length() - 1 if trigger else None
-    settled = ~owed & ((1 << ticks - 1) - 1)
+    settled = ~obligation_pending & ((1 << ticks - 1) - 1)
     tick = settled.bit_length()
     stretch = trigger >> tick << tick
     if not stretch:

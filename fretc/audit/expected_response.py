@@ -26,12 +26,12 @@ def demand(requirement: FormalizedRequirement) -> DemandText:
             return DemandText(expression(e.Not(sentence.response)))
         case s.After():
             return DemandText(
-                f"{timing(sentence.timing)} satisfy {response}", requirement.watch.horizon
+                f"{timing(sentence.timing)} satisfy {response}", requirement.watch.deadline_ticks
             )
         case s.Until() | s.Before():
             return DemandText(f"{timing(sentence.timing)} satisfy {response}")
         case s.Immediately() | s.Next() | s.Within():
-            return DemandText(response, requirement.watch.horizon)
+            return DemandText(response, requirement.watch.deadline_ticks)
         case s.Finally() | s.Eventually() | s.Always() | s.For():
             return DemandText(response)  # a response that must always hold has no deadline
         case _:

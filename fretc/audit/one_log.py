@@ -204,7 +204,12 @@ def _evidence(
         states=tuple((at(tick), state) for tick, state in states(outcome)),
         triggers=tuple(at(t) for t in outcome.triggers),
         violations=violations(
-            outcome, requirement.demand, monitor.REQUIREMENTS[0].horizon, at, recording, signals
+            outcome,
+            requirement.demand,
+            monitor.REQUIREMENTS[0].deadline_ticks,
+            at,
+            recording,
+            signals,
         ),
         open=tuple(at(t) for t, _ in outcome.open),
         latencies=tuple(round(k.seconds - t.seconds, 9) for t, k in answers),

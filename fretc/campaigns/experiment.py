@@ -163,7 +163,7 @@ class SafetyFunction:
         self._last = time
         self._monitor.advance([truths])
         (signal,) = self._monitor.must.signals()
-        self._demanded = bool(signal.trigger or signal.owed)
+        self._demanded = bool(signal.trigger or signal.obligation_pending)
         return self._demanded
 
     def _recording(self, time: int) -> Recording:

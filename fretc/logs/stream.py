@@ -227,7 +227,7 @@ class SampleStream:
             return None
         return Withdrawn(first, judged, self._propositions)
 
-    def glance(self, time: int) -> tuple[ClockTick, ...]:
+    def peek(self, time: int) -> tuple[ClockTick, ...]:
         """The values if there were a tick now, after those that still wait for messages.
 
         Nothing is judged. There are no values before the first tick is placed.

@@ -169,8 +169,11 @@ class RecordedRun:
         end = min(self._ticks - 1, last + _AROUND, first + _AFTER)
         place = bisect_right(self._outcome.triggers, first)
         trigger = self._outcome.triggers[place - 1] if place else first
-        horizon = self._monitor.REQUIREMENTS[0].horizon or 0
-        for begin, older in ((min(trigger, first - horizon), 0), (first - horizon, 1)):
+        deadline_ticks = self._monitor.REQUIREMENTS[0].deadline_ticks or 0
+        for begin, older in (
+            (min(trigger, first - deadline_ticks), 0),
+            (first - deadline_ticks, 1),
+        ):
             for back in (*_BACK, begin):
                 start = max(0, begin - _AROUND - back)
                 if end - start < MOST and self._is_alike(start, end, older):

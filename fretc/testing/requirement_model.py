@@ -251,8 +251,10 @@ class RequirementModel:
         was = bdd.variable(bit.now)
         broken = was | -counter.safe
         memory.steps[bit] = broken
-        accepts = -(broken | past.value(requirement.watch.fails))
-        return StepResult(broken - was, broken, accepts, past.value(requirement.watch.owed))
+        accepts = -(broken | past.value(requirement.watch.violated_if_ended))
+        return StepResult(
+            broken - was, broken, accepts, past.value(requirement.watch.obligation_pending)
+        )
 
     def _built(
         self,

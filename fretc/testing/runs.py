@@ -173,14 +173,14 @@ class FoundRuns:
 
     def _check_others(self, made: RunColumns) -> None:
         for each in self.others:
-            if judged(each, made).breach:
+            if judged(each, made).violation:
                 why = self.bench.beyond[each.id]  # All other requirements are satisfied.
                 raise UnsupportedError(f"the shortest run violates {each.id}, and {why}")
 
     def _judged(self, made: RunColumns) -> TestRun:
         own = judged(self.requirement, made)
         columns = {situation.key: self._column(situation, made) for situation in self.situations}
-        first = own.breach & -own.breach
+        first = own.violation & -own.violation
         early = (first << 1) - 1 if first else -1
         return TestRun(
             made,

@@ -118,7 +118,7 @@ def blotted(word: RunColumns, tick: int, names: Collection[str]) -> RunColumns:
 class RunSignals:
     """Signals of a sentence for a run, tick by tick."""
 
-    breach: int
+    violation: int
     """The sentence is violated at this tick or before."""
     accepted: int
     """FRET's verdict if the run ended here."""
@@ -127,10 +127,10 @@ class RunSignals:
 def judged(requirement: FormalizedRequirement, word: RunColumns) -> RunSignals:
     """Signals by the formulas of the monitor, as columns."""
     every = (1 << word.ticks) - 1
-    first = evaluate(requirement.watch.breach, word.columns, word.ticks)
-    breach = every & -(first & -first) if first else 0
-    fails = evaluate(requirement.watch.fails, word.columns, word.ticks)
-    return RunSignals(breach, every & ~(breach | fails))
+    first = evaluate(requirement.watch.violation, word.columns, word.ticks)
+    violation = every & -(first & -first) if first else 0
+    ended = evaluate(requirement.watch.violated_if_ended, word.columns, word.ticks)
+    return RunSignals(violation, every & ~(violation | ended))
 
 
 def is_killed(own: RunSignals, mutant: RunSignals, ticks: int) -> bool:
@@ -138,8 +138,8 @@ def is_killed(own: RunSignals, mutant: RunSignals, ticks: int) -> bool:
 
     Either they disagree on the whole run, or one is violated at a tick where the other accepts.
     """
-    apart = (own.accepted ^ mutant.accepted) & (own.breach ^ mutant.breach)
-    first = (own.breach | mutant.breach) & -(own.breach | mutant.breach)
+    apart = (own.accepted ^ mutant.accepted) & (own.violation ^ mutant.violation)
+    first = (own.violation | mutant.violation) & -(own.violation | mutant.violation)
     return bool((own.accepted ^ mutant.accepted) >> (ticks - 1) or apart & first)
 
 

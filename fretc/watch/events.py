@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from fretc.watch.sources.source import ConnectionLost, Missed, Opened, Reconnected
 from fretish.diagnostics.diagnostic import Diagnostic
-from monitors.guard import State
+from monitors.stop_supervisor import State
 
 
 @dataclass(frozen=True, slots=True)

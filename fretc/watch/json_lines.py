@@ -25,7 +25,7 @@ class RequirementLine(Record, frozen=True, tag="requirement", tag_field="type"):
 
     requirement: Name
     verdict: Annotated[str, about("the verdict of an audit if the run ended now")]
-    owed: Annotated[
+    obligation_pending: Annotated[
         bool | None,
         about(
             "whether an obligation is open (null: unknown); a robot with a stop supervisor "

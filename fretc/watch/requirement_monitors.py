@@ -49,7 +49,7 @@ class RequirementMonitors:
         """The state of each requirement if the trace ended here."""
         return tuple(standing for monitor in self.monitors for standing in monitor.standings())
 
-    def owed(self, rows: Iterable[Mapping[str, Truth]] = ()) -> tuple[Truth, ...]:
+    def obligation_pending(self, rows: Iterable[Mapping[str, Truth]] = ()) -> tuple[Truth, ...]:
         """For each requirement, whether an obligation is open.
 
         Args:
@@ -60,7 +60,7 @@ class RequirementMonitors:
             monitor.standings_after(ahead) if ahead else monitor.standings()
             for monitor in self.monitors
         )
-        return tuple(standing.owed for standings in found for standing in standings)
+        return tuple(standing.obligation_pending for standings in found for standing in standings)
 
     def last_triggers(self) -> tuple[int | None, ...]:
         """For each requirement, the time of the last tick with a certain trigger."""

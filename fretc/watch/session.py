@@ -21,10 +21,10 @@ from fretc.watch.requirement_monitors import RequirementMonitors
 from fretc.watch.sources.source import Arrival
 from fretish.clock import TimeSource
 from fretish.diagnostics.diagnostic import Diagnostic
-from monitors.guard import State
 from monitors.kernel.columns import rows_of
 from monitors.kernel.stepping import Standing
 from monitors.kernel.verdicts import Truth
+from monitors.stop_supervisor import State
 from monitors.ticking import Ledger, is_jump
 
 
@@ -241,15 +241,17 @@ class Session:
         """The present state of each requirement.
 
         Args:
-            ahead: whether messages since the last tick count for `owed`.
+            ahead: whether messages since the last tick count for `obligation_pending`.
         """
         monitors = self._monitors
         if ahead and self._ahead is None:
-            rows = [tick.truth for tick in self._stream.glance(max(self.now, self._time_passed))]
-            self._ahead = monitors.owed(rows)
-        owed = self._ahead if ahead and self._ahead is not None else monitors.owed()
-        owed = (None,) * len(owed) if self.interrupted else owed
-        read = zip(monitors.standings(), owed, monitors.last_triggers(), strict=True)
+            rows = [tick.truth for tick in self._stream.peek(max(self.now, self._time_passed))]
+            self._ahead = monitors.obligation_pending(rows)
+        pending = (
+            self._ahead if ahead and self._ahead is not None else monitors.obligation_pending()
+        )
+        pending = (None,) * len(pending) if self.interrupted else pending
+        read = zip(monitors.standings(), pending, monitors.last_triggers(), strict=True)
         return tuple(
             State(
                 standing.requirement,

@@ -12,11 +12,15 @@ from fretc.watch.events import DiagnosticEvent, LateMessages, RunEnded, StateCha
 from fretc.watch.session import Session
 from fretc.watch.sources.source import ConnectionLost, Missed, Opened, Reconnected
 from fretish.bindings.amounts import duration, seconds
-from monitors.guard import State
 from monitors.kernel.verdicts import Truth
+from monitors.stop_supervisor import State
 
 _S = 10**9
-_OWED: Mapping[Truth, str] = {True: "owed", None: "may be owed", False: ""}
+_OBLIGATION: Mapping[Truth, str] = {
+    True: "obligation pending",
+    None: "obligation may be pending",
+    False: "",
+}
 _NAME = 40
 """The widest name of a requirement, in columns."""
 
@@ -59,13 +63,13 @@ def _demand(state: State, now: int) -> str:
     parts = []
     if state.violated_ns is not None:
         parts.append(f"first {_ago(state.violated_ns, now)}")
-    owed = _OWED[state.owed]
-    if owed and state.open_ns is not None:
-        owed = f"{owed} since {duration(max(0, now - state.open_ns) / _S)}"
-    if owed and state.deadline_ns is not None:
+    pending = _OBLIGATION[state.obligation_pending]
+    if pending and state.open_ns is not None:
+        pending = f"{pending} since {duration(max(0, now - state.open_ns) / _S)}"
+    if pending and state.deadline_ns is not None:
         left = state.deadline_ns - now
-        owed += f", {duration(left / _S)} left" if left >= 0 else ", too late"
-    parts += [owed] if owed else []
+        pending += f", {duration(left / _S)} left" if left >= 0 else ", too late"
+    parts += [pending] if pending else []
     if state.triggered_ns is not None:
         parts.append(f"triggered {_ago(state.triggered_ns, now)}")
     return "; ".join(parts)
@@ -110,9 +114,12 @@ def line(event: WatchEvent, start: int | None) -> str | None:
 
 def _changed(state: State, before: State | None, time: int, start: int | None) -> str | None:
     """The line of a changed verdict, or of an obligation that opens or ends, else None."""
-    previous = None if before is None else (before.verdict, before.owed)
-    if previous == (state.verdict, state.owed):
+    previous = None if before is None else (before.verdict, before.obligation_pending)
+    if previous == (state.verdict, state.obligation_pending):
         return None
     at = seconds((time - start) / _S) if start is not None else "-"
-    owed = f", {_OWED[state.owed]}" if _OWED[state.owed] else ""
-    return f"{at}  {VERDICTS[state.verdict].sign.glyph} {state.requirement} {state.verdict}{owed}"
+    obligation = _OBLIGATION[state.obligation_pending]
+    pending = f", {obligation}" if obligation else ""
+    return (
+        f"{at}  {VERDICTS[state.verdict].sign.glyph} {state.requirement} {state.verdict}{pending}"
+    )

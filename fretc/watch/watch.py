@@ -22,7 +22,7 @@ from fretc.watch.sources.source import (
 from fretish.bindings.amounts import duration
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
-from monitors.guard import State
+from monitors.stop_supervisor import State
 
 MOST_RUNS = 100
 """The number of runs after which a clock that is set back repeatedly is taken for two clocks."""

@@ -8,16 +8,16 @@ Delight, 2013, section 2; windows by doubling: van Herk, Pattern Recognition Let
 
 import itertools
 from collections.abc import Iterable, Iterator, Sequence
-from functools import cache
+from functools import lru_cache
 from typing import NamedTuple
 
-from monitors.kernel.verdicts import Truth, boolean
+from monitors.kernel.verdicts import Truth, boolean, same_length
 
 LARGE = 1 << 19
 """Ticks from which the memory of a column is allocated differently; see `reuse_memory`."""
 
 
-@cache
+@lru_cache(maxsize=None)
 def reuse_memory() -> None:
     """Let the C library reuse the memory of large columns.
 
@@ -45,7 +45,7 @@ class Column(NamedTuple):
         return Column(self.true | (value is True) << ticks, self.unknown | (value is None) << ticks)
 
 
-def column(codes: bytes | bytearray) -> Column:
+def column(codes: "bytes | bytearray") -> Column:
     """The column of one code a tick: 0 false, 1 true, 2 unknown."""
     if not codes:
         return Column(0, 0)
@@ -100,11 +100,11 @@ class Piece(NamedTuple):
     """Some ticks of a trace."""
 
     ticks: int
-    codes: Sequence[bytes]
+    codes: "Sequence[bytes]"
     """For each proposition, one code per tick."""
 
 
-def pieces_of(rows: Iterable[Sequence[Truth]]) -> Iterator[Piece]:
+def pieces_of(rows: "Iterable[Sequence[Truth]]") -> "Iterator[Piece]":
     """Truth values, one row a tick, in pieces.
 
     Raises:
@@ -113,15 +113,15 @@ def pieces_of(rows: Iterable[Sequence[Truth]]) -> Iterator[Piece]:
     """
     waiting = iter(rows)
     while some := list(itertools.islice(waiting, _AT_ONCE)):
-        columns = zip(*some, strict=True)
-        yield Piece(len(some), [bytes(map(code, values)) for values in columns])
+        same_length(*some)
+        yield Piece(len(some), [bytes(map(code, values)) for values in zip(*some)])
 
 
 _AT_ONCE = 512
 """Rows of a piece: there may be thousands of values in each."""
 
 
-def columns_of(pieces: Iterable[Piece], count: int) -> tuple[int, tuple[Column, ...]]:
+def columns_of(pieces: "Iterable[Piece]", count: int) -> "tuple[int, tuple[Column, ...]]":
     """The length and the columns of a trace of `count` propositions.
 
     Raises:
@@ -131,20 +131,21 @@ def columns_of(pieces: Iterable[Piece], count: int) -> tuple[int, tuple[Column, 
     ticks = 0
     for piece in pieces:
         ticks += piece.ticks
-        for tape, codes in zip(tapes, piece.codes, strict=True):
+        same_length(tapes, piece.codes)
+        for tape, codes in zip(tapes, piece.codes):
             tape.append(codes)
     return ticks, tuple(tape.column() for tape in tapes)
 
 
-def truths(column: Column, ticks: int) -> list[Truth]:
+def truths(column: Column, ticks: int) -> "list[Truth]":
     """The truth value at each tick."""
     true, unknown = (f"{bits:0{ticks}b}"[::-1][:ticks] for bits in column)
     if not column.unknown:
         return [bit == "1" for bit in true]
-    return [None if doubt == "1" else bit == "1" for bit, doubt in zip(true, unknown, strict=True)]
+    return [None if doubt == "1" else bit == "1" for bit, doubt in zip(true, unknown)]
 
 
-def rows_of(columns: Sequence[Column], ticks: int) -> Iterator[tuple[Truth, ...]]:
+def rows_of(columns: "Sequence[Column]", ticks: int) -> "Iterator[tuple[Truth, ...]]":
     """The truth value of each column, tick by tick."""
     if not columns:
         yield from itertools.repeat((), ticks)
@@ -157,14 +158,14 @@ def rows_of(columns: Sequence[Column], ticks: int) -> Iterator[tuple[Truth, ...]
             for column in data
         ]
         few = min(8 * _STRETCH, ticks - 8 * first)
-        yield from zip(*(truths(part, few) for part in parts), strict=True)
+        yield from zip(*(truths(part, few) for part in parts))
 
 
 _STRETCH = 64
 """Bytes of a column whose truth values are in memory at once."""
 
 
-def ticks_of(column: int) -> Iterator[int]:
+def ticks_of(column: int) -> "Iterator[int]":
     """The ticks at which the column is true, in order."""
     return itertools.chain.from_iterable(_tick_lists(column))
 
@@ -173,17 +174,17 @@ _PIECE_BYTES = 512
 _BITS = tuple(tuple(bit for bit in range(8) if byte >> bit & 1) for byte in range(256))
 
 
-def _tick_lists(column: int) -> Iterator[list[int]]:
+def _tick_lists(column: int) -> "Iterator[list[int]]":
     """The ticks in lists, which is faster than a generator of single ticks."""
     data = column.to_bytes((column.bit_length() + 7) // 8, "little")
     for start in range(0, len(data), _PIECE_BYTES):
         piece = data[start : start + _PIECE_BYTES]
         if piece.strip(b"\0"):
-            octets = zip(range(8 * start, 8 * (start + len(piece)), 8), piece, strict=True)
+            octets = zip(range(8 * start, 8 * (start + len(piece)), 8), piece)
             yield [first + bit for first, byte in octets if byte for bit in _BITS[byte]]
 
 
-def first_of(column: int) -> int | None:
+def first_of(column: int) -> "int | None":
     """The first tick at which it is true."""
     return (column & -column).bit_length() - 1 if column else None
 
@@ -193,10 +194,10 @@ def starts_of(column: int) -> int:
     return column ^ column & column << 1
 
 
-def runs_of(column: int) -> Iterator[tuple[int, int]]:
+def runs_of(column: int) -> "Iterator[tuple[int, int]]":
     """Its maximal runs of true ticks, each as (first, last)."""
     edges = ticks_of(column ^ column << 1)
-    return ((first, after - 1) for first, after in zip(edges, edges, strict=True))
+    return ((first, after - 1) for first, after in zip(edges, edges))
 
 
 # Operators, in the order of their cost ---------------------------------------------------------
@@ -224,7 +225,7 @@ def released(left: int, right: int) -> int:
     return (right ^ starts ^ right + starts + 1) >> 1
 
 
-def once(arg: int, lo: int, hi: int | None, every: int) -> int:
+def once(arg: int, lo: int, hi: "int | None", every: int) -> int:
     """`O[lo,hi] arg`."""
     if lo >= every.bit_length():
         return 0  # no tick of the trace is so long ago
@@ -232,7 +233,7 @@ def once(arg: int, lo: int, hi: int | None, every: int) -> int:
     return _from_first(arg, every) if hi is None else _smeared(arg, hi - lo, every)
 
 
-def historically(arg: int, lo: int, hi: int | None, every: int) -> int:
+def historically(arg: int, lo: int, hi: "int | None", every: int) -> int:
     """`H[lo,hi] arg`."""
     return every ^ once(every ^ arg, lo, hi, every)
 
@@ -246,7 +247,7 @@ def since_from(unbounded: int, left: int, right: int, lo: int, every: int) -> in
     return unbounded << lo & historically(left, 0, lo - 1, every) if lo else unbounded
 
 
-def since_between(left: int, right: int, lo: int, hi: int | None, every: int) -> int:
+def since_between(left: int, right: int, lo: int, hi: "int | None", every: int) -> int:
     """`left S[lo,hi] right`."""
     result = since(left, right)
     if hi is None:
@@ -257,7 +258,7 @@ def since_between(left: int, right: int, lo: int, hi: int | None, every: int) ->
     return result << lo & historically(left, 0, lo - 1, every) if lo else result
 
 
-def released_between(left: int, right: int, lo: int, hi: int | None, every: int) -> int:
+def released_between(left: int, right: int, lo: int, hi: "int | None", every: int) -> int:
     """`!(!left S[lo,hi] !right)`."""
     return every ^ since_between(every ^ left, every ^ right, lo, hi, every)
 

@@ -5,7 +5,8 @@ import io
 import json
 import os
 import sys
-from collections.abc import Callable, Iterable, Sequence
+import typing
+from collections.abc import Sequence
 from typing import TextIO
 
 from monitors.kernel.columns import Piece, columns_of
@@ -19,11 +20,11 @@ from monitors.kernel.verdicts import (
     Verdict,
 )
 
-Read = Callable[[TextIO, str, argparse.Namespace], Iterable[Piece]]
+Read = typing.Callable[[TextIO, str, argparse.Namespace], typing.Iterable[Piece]]
 """Gives the truth of the propositions, from a table, its source and the options."""
 
 
-def main(monitor: type[Monitor], arguments: Sequence[str] | None = None) -> int:
+def main(monitor: "type[Monitor]", arguments: "Sequence[str] | None" = None) -> int:
     """Run the monitor over tables of propositions and print the verdicts.
 
     Returns:
@@ -39,10 +40,10 @@ def main(monitor: type[Monitor], arguments: Sequence[str] | None = None) -> int:
 
 
 def judge(
-    monitor: type[Monitor],
+    monitor: "type[Monitor]",
     parser: argparse.ArgumentParser,
     read: Read,
-    arguments: Sequence[str] | None,
+    arguments: "Sequence[str] | None",
 ) -> int:
     """Run the monitor over the tables that the arguments name, and print the verdicts.
 
@@ -92,7 +93,7 @@ def _complain(text: str) -> None:
         print(visible(text), file=sys.stderr)
 
 
-def _parser(monitor: type[Monitor]) -> argparse.ArgumentParser:
+def _parser(monitor: "type[Monitor]") -> argparse.ArgumentParser:
     sentences = "\n".join(f"  {r.id}: {r.sentence}" for r in monitor.REQUIREMENTS)
     parser = argparse.ArgumentParser(
         formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -140,7 +141,7 @@ def _report(monitor: Monitor, path: str, options: argparse.Namespace, read: Read
             raise InputError(f"{source}: {error.strerror or error}") from None
     run = stepped if options.engine == "online" else evaluate
     end = Verdict(options.end)
-    outcomes = run(monitor, dict(zip(names, columns, strict=True)), ticks, end)
+    outcomes = run(monitor, dict(zip(names, columns)), ticks, end)
     for outcome in outcomes:
         if options.format == "json":
             print(json.dumps(outcome.as_json()))
@@ -166,21 +167,19 @@ def _sentence(outcome: Outcome) -> str:
 
 def _details(outcome: Outcome) -> str:
     count = f"{len(outcome.triggers)} trigger{'' if len(outcome.triggers) == 1 else 's'}"
-    match outcome.verdict:
-        case Verdict.SATISFIED:
-            return count
-        case Verdict.VIOLATED:
-            return f"ticks {_in_words(outcome.violations)}"
-        case Verdict.INCONCLUSIVE:
-            return f"{count}, {len(outcome.open)} open at the end"
-        case Verdict.VACUOUS:
-            return "never triggered"
-        case _:
-            unknown = outcome.unknown
-            return f"unknown at ticks {_in_words(unknown)}" if unknown else _why_no_data(outcome)
+    if outcome.verdict is Verdict.SATISFIED:
+        return count
+    if outcome.verdict is Verdict.VIOLATED:
+        return f"ticks {_in_words(outcome.violations)}"
+    if outcome.verdict is Verdict.INCONCLUSIVE:
+        return f"{count}, {len(outcome.open)} open at the end"
+    if outcome.verdict is Verdict.VACUOUS:
+        return "never triggered"
+    unknown = outcome.unknown
+    return f"unknown at ticks {_in_words(unknown)}" if unknown else _why_no_data(outcome)
 
 
-def _in_words(runs: Sequence[tuple[int, int]]) -> str:
+def _in_words(runs: "Sequence[tuple[int, int]]") -> str:
     return ", ".join(f"{first}..{last}" for first, last in runs)
 
 

@@ -34,6 +34,7 @@ from monitors.kernel.verdicts import (
     Truth,
     Verdict,
     at_end,
+    same_length,
     truth,
 )
 
@@ -50,21 +51,21 @@ class Outcome:
     verdict: Verdict
     finite: Truth
     """FRET's verdict on the finite trace."""
-    first_violation: int | None
-    violations: Sequence[tuple[int, int]]
+    first_violation: "int | None"
+    violations: "Sequence[tuple[int, int]]"
     """Intervals of ticks at which an obligation was violated, or was overdue without response."""
-    unknown: Sequence[tuple[int, int]]
+    unknown: "Sequence[tuple[int, int]]"
     """Intervals of ticks at which it is unknown whether an obligation was violated."""
-    triggers: Sequence[int]
-    answers: Sequence[tuple[int, int]]
+    triggers: "Sequence[int]"
+    answers: "Sequence[tuple[int, int]]"
     """Trigger and first response of each obligation that was met."""
-    open: Sequence[tuple[int, int | None]]
+    open: "Sequence[tuple[int, int | None]]"
     """Trigger and deadline (None: no deadline) of each obligation that is open at the end."""
-    uncertain: Sequence[int] = ()
+    uncertain: "Sequence[int]" = ()
     """Triggers whose response or open obligation depends on unknown values; all others do not
     depend on them."""
 
-    def as_json(self) -> dict[str, Any]:
+    def as_json(self) -> "dict[str, Any]":
         """Plain values, in a fixed order of keys."""
         return {
             "requirement": self.requirement,
@@ -82,8 +83,8 @@ class Outcome:
 
 
 def evaluate(
-    monitor: Monitor, columns: Mapping[str, Column], ticks: int, end: Verdict = INCONCLUSIVE
-) -> tuple[Outcome, ...]:
+    monitor: Monitor, columns: "Mapping[str, Column]", ticks: int, end: Verdict = INCONCLUSIVE
+) -> "tuple[Outcome, ...]":
     """The column program over a whole trace; the monitor's own state is not touched.
 
     Args:
@@ -101,15 +102,16 @@ def evaluate(
     must = may = monitor.columns(every, **literals_of(monitor, columns, every, doubt=False))
     if any(columns[name].unknown for name in monitor.PROPOSITIONS):
         may = monitor.columns(every, **literals_of(monitor, columns, every, doubt=True))
+    same_length(monitor.REQUIREMENTS, must, may)
     return tuple(
         _outcome(requirement, ticks, certain, possible, end)
-        for requirement, certain, possible in zip(monitor.REQUIREMENTS, must, may, strict=True)
+        for requirement, certain, possible in zip(monitor.REQUIREMENTS, must, may)
     )
 
 
 def stepped(
-    monitor: Monitor, columns: Mapping[str, Column], ticks: int, end: Verdict = INCONCLUSIVE
-) -> tuple[Outcome, ...]:
+    monitor: Monitor, columns: "Mapping[str, Column]", ticks: int, end: Verdict = INCONCLUSIVE
+) -> "tuple[Outcome, ...]":
     """The outcomes, as from `evaluate`, by stepping the monitor from tick 0 over every tick.
 
     Args, raises: as for `evaluate`.
@@ -127,10 +129,11 @@ def stepped(
         else:
             may.append(_signal_codes(monitor.may, some))
             monitor._meet()
-    rails = zip(must.columns(), may.columns(), strict=True)
+    columns_of_both = tuple(must.columns()), tuple(may.columns())
+    same_length(monitor.REQUIREMENTS, *columns_of_both)
     return tuple(
         _outcome(requirement, ticks, certain, possible, end)
-        for requirement, (certain, possible) in zip(monitor.REQUIREMENTS, rails, strict=True)
+        for requirement, certain, possible in zip(monitor.REQUIREMENTS, *columns_of_both)
     )
 
 
@@ -138,7 +141,7 @@ _TICKS = 512
 """Ticks over which the signals of one rail are gathered, and then those of the other."""
 
 
-def _signal_codes(rail: Rail, rows: Iterable[Row]) -> bytes:
+def _signal_codes(rail: Rail, rows: "Iterable[Row]") -> bytes:
     """The codes of all signals after each row, one row after the other."""
     values: list[bool] = []
     for row in rows:
@@ -159,30 +162,41 @@ class _Record:
         for place, tape in enumerate(self._tapes):
             tape.append(codes[place :: len(self._tapes)])
 
-    def columns(self) -> Iterator[Signals[int]]:
+    def columns(self) -> "Iterator[Signals[int]]":
         """The signals of each requirement."""
         columns = (tape.column().true for tape in self._tapes)
         return map(Signals, *[columns] * len(Signals._fields))
 
 
 def _outcome(
-    requirement: Requirement, ticks: int, must: Signals[int], may: Signals[int], end: Verdict
+    requirement: Requirement, ticks: int, must: "Signals[int]", may: "Signals[int]", end: Verdict
 ) -> Outcome:
     last = ticks - 1
-    violated, perhaps = must.breach | must.doom, may.breach | may.doom
+    violated, perhaps = (
+        must.violation | must.violation_inevitable,
+        may.violation | may.violation_inevitable,
+    )
     unknown = perhaps ^ violated
     verdict = NO_DATA
     finite: Truth = None
     if ticks:
-        owed = truth(_at(must.owed, last), _at(may.owed, last))
+        pending = truth(_at(must.obligation_pending, last), _at(may.obligation_pending, last))
         triggered = truth(must.trigger != 0, may.trigger != 0)
-        verdict = at_end(truth(violated != 0, perhaps != 0), owed, triggered)
-        broken = truth(must.breach != 0, may.breach != 0)
-        finite = finite_verdict(broken, truth(_at(must.fails, last), _at(may.fails, last)))
+        verdict = at_end(truth(violated != 0, perhaps != 0), pending, triggered)
+        broken = truth(must.violation != 0, may.violation != 0)
+        finite = finite_verdict(
+            broken, truth(_at(must.violated_if_ended, last), _at(may.violated_if_ended, last))
+        )
     if end == VIOLATED and verdict == INCONCLUSIVE:
         verdict, violated = VIOLATED, 1 << last
     demands = _Demands(
-        ticks, requirement.horizon, must.trigger, must.answer, may.answer, must.owed, may.owed
+        ticks,
+        requirement.deadline_ticks,
+        must.trigger,
+        must.answer,
+        may.answer,
+        must.obligation_pending,
+        may.obligation_pending,
     )
     return Outcome(
         requirement=requirement.id,
@@ -212,12 +226,12 @@ class _Demands:
     """
 
     ticks: int
-    horizon: int | None
+    deadline_ticks: "int | None"
     triggers: int
     must_answer: int
     may_answer: int
-    must_owed: int
-    may_owed: int
+    must_pending: int
+    may_pending: int
 
     @cached_property
     def answered(self) -> int:
@@ -233,7 +247,7 @@ class _Demands:
     @cached_property
     def uncertain(self) -> int:
         """The met or open obligations that were possibly not pending until then."""
-        waits = self.must_owed ^ self.must_owed & self.may_answer
+        waits = self.must_pending ^ self.must_pending & self.may_answer
         first = _last_run(waits, self.ticks)
         certain = until(waits, self.must_answer, self._most) & self.answered
         return self.answered ^ certain | self.open ^ self.open >> first << first
@@ -241,14 +255,14 @@ class _Demands:
     @property
     def _waits(self) -> int:
         """The ticks at which an obligation may be open, and no response is certain."""
-        return self.may_owed ^ self.may_owed & self.must_answer
+        return self.may_pending ^ self.may_pending & self.must_answer
 
     @property
     def _most(self) -> int:
         """How many ticks an obligation can be pending within the trace."""
-        return self.ticks if self.horizon is None else min(self.horizon, self.ticks)
+        return self.ticks if self.deadline_ticks is None else min(self.deadline_ticks, self.ticks)
 
-    def answers(self) -> Iterator[tuple[int, int]]:
+    def answers(self) -> "Iterator[tuple[int, int]]":
         """Trigger and response, which is the first one from the trigger on."""
         answers, answer = ticks_of(self.must_answer), -1
         for trigger in ticks_of(self.answered):
@@ -256,10 +270,10 @@ class _Demands:
                 answer = next(answers)
             yield trigger, answer
 
-    def deadlines(self) -> Iterator[tuple[int, int | None]]:
+    def deadlines(self) -> "Iterator[tuple[int, int | None]]":
         """Trigger and deadline of each open obligation."""
         for trigger in ticks_of(self.open):
-            yield trigger, None if self.horizon is None else trigger + self.horizon
+            yield trigger, None if self.deadline_ticks is None else trigger + self.deadline_ticks
 
 
 def _last_run(column: int, ticks: int) -> int:

@@ -10,17 +10,17 @@ import operator
 import struct
 from collections.abc import Callable, Mapping
 from fractions import Fraction
-from functools import cache
+from functools import lru_cache
 from math import ceil, floor, inf, isfinite, isnan
 from numbers import Integral, Real
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Optional, Union
 
 from monitors.kernel.verdicts import Truth, boolean
 
-Number = float | None
+Number = Optional[float]
 """A number, or None: unknown. NaN is unknown, too."""
 
-Reading = float | None
+Reading = Optional[float]
 """A number as it is computed with, never NaN. An `int` has 2^53 or more, with or without a sign."""
 
 DOUBLES_END = 2**53
@@ -57,11 +57,11 @@ class Constant(NamedTuple):
         return self.single if isinstance(given, Single) else self.double
 
 
-Term = Reading | Constant
+Term = Union[float, Constant, None]
 """A given number, or what is computed of some; or a constant."""
 
 
-@cache
+@lru_cache(maxsize=None)
 def exact(text: str) -> Constant:
     """The constant that is written so: `20`, `0.35`, `25/18`."""
     fraction = Fraction(text)
@@ -69,7 +69,7 @@ def exact(text: str) -> Constant:
     return Constant(fraction, double, _single(fraction, double))
 
 
-def _double(number: Fraction | int) -> float:
+def _double(number: "Fraction | int") -> float:
     try:
         return float(number)
     except OverflowError:
@@ -156,7 +156,7 @@ def _whole(value: int) -> Reading:
     return float(value) if -DOUBLES_END < value < DOUBLES_END else value
 
 
-def _known(value: float) -> float | None:
+def _known(value: float) -> "float | None":
     return None if isnan(value) else value
 
 
@@ -169,7 +169,7 @@ def truth_value(value: object, name: str) -> Truth:
     return value if value is None or value is True or value is False else boolean(value, name)
 
 
-def word(value: object, name: str, words: tuple[str, ...]) -> str | None:
+def word(value: object, name: str, words: "tuple[str, ...]") -> "str | None":
     """A word of an enumeration, after a check; None is unknown.
 
     Raises:
@@ -188,7 +188,7 @@ def word(value: object, name: str, words: tuple[str, ...]) -> str | None:
 
 # What is compared -----------------------------------------------------------------------------
 
-_COMPARE: Mapping[str, Callable[[float, float], bool]] = {
+_COMPARE: "Mapping[str, Callable[[float, float], bool]]" = {
     "<": operator.lt,
     "<=": operator.le,
     ">": operator.gt,
@@ -209,7 +209,7 @@ def compared(left: Term, sign: str, right: Term) -> Truth:
     assert not isinstance(left, Constant)
     if not isinstance(right, Constant):
         return _COMPARE[sign](left, right)
-    end = _WHOLE_END if isinstance(left, int | Wide) else DOUBLES_END
+    end = _WHOLE_END if isinstance(left, (int, Wide)) else DOUBLES_END
     if isinstance(left, Single) or not _HALVES_END <= abs(right.exact) < end:
         return _COMPARE[sign](left, right.beside(left))
     if right.exact.denominator != 1 and sign in ("=", "!="):
@@ -217,7 +217,7 @@ def compared(left: Term, sign: str, right: Term) -> Truth:
     return _COMPARE[sign](left, (ceil if sign in ("<", ">=") else floor)(right.exact))
 
 
-def is_word(value: str | None, sign: str, other: str | None) -> Truth:
+def is_word(value: "str | None", sign: str, other: "str | None") -> Truth:
     """`value = other` or `value != other`."""
     if value is None or other is None:
         return None
@@ -227,7 +227,7 @@ def is_word(value: str | None, sign: str, other: str | None) -> Truth:
 # What is computed -----------------------------------------------------------------------------
 
 
-def _plain(term: float | Constant) -> float:
+def _plain(term: "float | Constant") -> float:
     """The value as a 64-bit float."""
     if isinstance(term, Constant):
         return term.double
@@ -295,7 +295,7 @@ def greater(left: Term, right: Term) -> Term:
     return _one_of(left, right, operator.ge)
 
 
-def _one_of(left: Term, right: Term, first: Callable[[Any, Any], bool]) -> Term:
+def _one_of(left: Term, right: Term, first: "Callable[[Any, Any], bool]") -> Term:
     """The left one where it comes first, else the right one, as a number of the kind of both."""
     if left is None or right is None:
         return None
@@ -303,16 +303,16 @@ def _one_of(left: Term, right: Term, first: Callable[[Any, Any], bool]) -> Term:
         return left if first(left.exact, right.exact) else right
     x, y = _alike(left, right), _alike(right, left)
     chosen = x if first(x, y) else y
-    if isinstance(x, int | Wide) or isinstance(y, int | Wide):
+    if isinstance(x, (int, Wide)) or isinstance(y, (int, Wide)):
         return chosen if isinstance(chosen, int) else Wide(chosen)
     return chosen if isinstance(x, Single) and isinstance(y, Single) else float(chosen)
 
 
-def _alike(term: float | Constant, other: float | Constant) -> float:
+def _alike(term: "float | Constant", other: "float | Constant") -> float:
     """A number to choose: beside a constant, 64-bit floats stand for whole numbers."""
     if isinstance(term, Constant):
         return term.beside(other)
-    return _plain(term) if isinstance(term, int | Wide) and isinstance(other, Constant) else term
+    return _plain(term) if isinstance(term, (int, Wide)) and isinstance(other, Constant) else term
 
 
 def in_base(value: Reading, scale: Constant) -> Reading:

@@ -10,6 +10,8 @@ Introduction to Metamathematics, 1952, section 64 (strong three-valued logic).
 import hashlib
 import itertools
 import json
+import typing
+import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from operator import itemgetter
 from typing import Any, ClassVar, NamedTuple, Protocol, TypeVar
@@ -24,7 +26,7 @@ from monitors.kernel.verdicts import (
     truth,
 )
 
-Row = Sequence[Truth]
+Row = typing.Sequence[Truth]
 """The truth of each proposition at one tick, in the order of `PROPOSITIONS`."""
 
 
@@ -36,7 +38,7 @@ class Marks(NamedTuple):
 
     broken: int
     """The first tick at which an obligation was violated."""
-    doomed: int
+    violation_inevitable: int
     """The first tick at which open obligations became impossible to meet."""
     last: int
     """The last trigger."""
@@ -46,15 +48,15 @@ class Marks(NamedTuple):
     @property
     def violated(self) -> int:
         """The tick at which the violation is certain; -1: not violated."""
-        ticks = [tick for tick in (self.broken, self.doomed) if tick >= 0]
+        ticks = [tick for tick in (self.broken, self.violation_inevitable) if tick >= 0]
         return min(ticks, default=-1)
 
 
 class Rail(Protocol):
     """A generated rail: straight-line code, its state in slots."""
 
-    __slots__: tuple[str, ...]
-    CELLS: ClassVar[tuple[str, ...]]
+    __slots__: "tuple[str, ...]"
+    CELLS: ClassVar["tuple[str, ...]"]
     """The slots on which later signals depend; the others only store ticks."""
     doubt: bool
     tick: int
@@ -62,13 +64,13 @@ class Rail(Protocol):
     def __init__(self, doubt: bool = False) -> None:
         """Start before the first tick; unknowns count as `doubt`."""
 
-    def advance(self, rows: Iterable[Sequence[Any]]) -> bool:
+    def advance(self, rows: "Iterable[Sequence[Any]]") -> bool:
         """Step over all rows; whether all their values were known."""
 
-    def signals(self) -> tuple[Signals[bool], ...]:
+    def signals(self) -> "tuple[Signals[bool], ...]":
         """The signals of the last tick, for each requirement."""
 
-    def marks(self) -> tuple[Marks, ...]:
+    def marks(self) -> "tuple[Marks, ...]":
         """The stored ticks of each requirement."""
 
 
@@ -135,7 +137,7 @@ class Window:
             self.last.next = run
         self.last = run
 
-    def _after(self, run: _Run) -> _Run | None:
+    def _after(self, run: _Run) -> "_Run | None":
         if run is self.last:
             return None
         return self.branch if run is self.turn else run.next
@@ -161,7 +163,7 @@ class Window:
         other.turn = self.last
         return other
 
-    def _runs(self) -> Iterator[tuple[int, int]]:
+    def _runs(self) -> "Iterator[tuple[int, int]]":
         """The oldest first."""
         run = self.first
         while run is not None:
@@ -170,7 +172,7 @@ class Window:
         if self.end != _NONE:
             yield self.start, self.end
 
-    def state(self) -> tuple[tuple[int, int], ...]:
+    def state(self) -> "tuple[tuple[int, int], ...]":
         """The runs, each as ages (oldest, youngest); ages above `hi` are all one."""
         return tuple((min(self.now - a, self.hi), self.now - b) for a, b in self._runs())
 
@@ -189,12 +191,12 @@ class Window:
             mine, theirs = self._after(mine), other._after(theirs)
         return mine is theirs is None and youngest[0] == youngest[1]
 
-    def _same(self, one: tuple[int, int], other: tuple[int, int]) -> bool:
+    def _same(self, one: "tuple[int, int]", other: "tuple[int, int]") -> bool:
         """Whether two runs are equal within the window."""
         reach = self.now - self.hi
         return one[1] == other[1] and max(one[0], reach) == max(other[0], reach)
 
-    def restore(self, state: Sequence[Sequence[int]]) -> None:
+    def restore(self, state: "Sequence[Sequence[int]]") -> None:
         """Restore a state."""
         self._clear()
         self.now = self.hi
@@ -215,15 +217,26 @@ class Standing(NamedTuple):
     verdict: Verdict
     finite: Truth
     """FRET's verdict on the finite trace up to here."""
-    first_violation: int | None
-    open: int | None
+    first_violation: "int | None"
+    open: "int | None"
     """The trigger of the obligation that is certainly open: of the oldest, or of the latest if a
     new one replaces it (`for`, `next`)."""
-    deadline: int | None
+    deadline: "int | None"
     """The last tick at which this obligation can be decided; None if it has no deadline."""
-    owed: Truth
+    obligation_pending: Truth
     """Whether an obligation begins at this tick or is open after it. The robot must stop unless it
     is False. None before the first tick, and if it depends on an unknown value."""
+
+    @property
+    def owed(self) -> Truth:
+        """The former name of `obligation_pending`; deprecated."""
+        _renamed("owed", "obligation_pending")
+        return self.obligation_pending
+
+
+def _renamed(old: str, new: str) -> None:
+    """Warn the caller of a name that the next version does not have any more."""
+    warnings.warn(f"`{old}` is now `{new}`", DeprecationWarning, stacklevel=3)
 
 
 _PIECE, _FEW, _SOON = 4096, 64, 64
@@ -236,15 +249,15 @@ class Monitor:
 
     PROGRAM: ClassVar[str]
     """SHA-256 of the generated code: a state fits no other."""
-    REQUIREMENTS: ClassVar[tuple[Requirement, ...]]
-    PROPOSITIONS: ClassVar[Mapping[str, str]]
+    REQUIREMENTS: ClassVar["tuple[Requirement, ...]"]
+    PROPOSITIONS: ClassVar["Mapping[str, str]"]
     """Proposition -> its parameter of `step`."""
-    LITERALS: ClassVar[tuple[tuple[str, str, bool], ...]]
+    LITERALS: ClassVar["tuple[tuple[str, str, bool], ...]"]
     """Each parameter of `columns`, its proposition, and False if it is negated."""
-    RAIL: ClassVar[type[Rail]]
-    verdicts: Callable[..., tuple[Verdict, ...]]
+    RAIL: ClassVar["type[Rail]"]
+    verdicts: "Callable[..., tuple[Verdict, ...]]"
     """The LTL3 verdict on each requirement: satisfied, violated or pending."""
-    columns: Callable[..., tuple[Signals[int], ...]]
+    columns: "Callable[..., tuple[Signals[int], ...]]"
     """The signals of each requirement on whole traces. Arguments: `every`, the column that is true
     at every tick, and a keyword for each of `LITERALS`."""
 
@@ -261,7 +274,7 @@ class Monitor:
         """The last tick; -1 before the first."""
         return self.must.tick
 
-    def state(self) -> dict[str, Any]:
+    def state(self) -> "dict[str, Any]":
         """The whole memory, as plain values that JSON can hold."""
         content = {
             "program": self.PROGRAM,
@@ -270,7 +283,7 @@ class Monitor:
         }
         return {**content, "sha256": _digest(content)}
 
-    def restore(self, state: Mapping[str, Any]) -> None:
+    def restore(self, state: "Mapping[str, Any]") -> None:
         """Go on from what `state` gave.
 
         Raises:
@@ -290,21 +303,18 @@ class Monitor:
         if content["may"] is not None:
             self._part(may)
 
-    def standings(self) -> tuple[Standing, ...]:
+    def standings(self) -> "tuple[Standing, ...]":
         """The standing of each requirement."""
         if self.tick < 0:
             nothing = (Verdict.NO_DATA, None, None, None, None, None)
             return tuple(Standing(r.id, *nothing) for r in self.REQUIREMENTS)
-        readings = zip(
-            self.must.marks(),
-            self.may.marks(),
-            self.must.signals(),
-            self.may.signals(),
-            strict=True,
-        )
-        return tuple(map(_standing, self.REQUIREMENTS, *zip(*readings, strict=True)))
+        marks = self.must.marks(), self.may.marks()
+        signals = self.must.signals(), self.may.signals()
+        return tuple(map(_standing, self.REQUIREMENTS, *marks, *signals))
 
-    def standings_after(self, rows: Iterable[Row | Mapping[str, Truth]]) -> tuple[Standing, ...]:
+    def standings_after(
+        self, rows: "Iterable[Row | Mapping[str, Truth]]"
+    ) -> "tuple[Standing, ...]":
         """The standings after further rows, without stepping the monitor.
 
         Raises:
@@ -312,20 +322,27 @@ class Monitor:
         """
         return self._after(rows, self.standings)
 
-    def owed_after(self, rows: Iterable[Row | Mapping[str, Truth]]) -> tuple[Truth, ...]:
-        """The `owed` of each of `standings_after(rows)`, but cheaper.
+    def obligation_pending_after(
+        self, rows: "Iterable[Row | Mapping[str, Truth]]"
+    ) -> "tuple[Truth, ...]":
+        """The `obligation_pending` of each of `standings_after(rows)`, but cheaper.
 
         Raises:
             KeyError, TypeError, ValueError: as `advance` does.
         """
-        return self._after(rows, self._owed)
+        return self._after(rows, self._obligation_pending)
 
-    def _owed(self) -> tuple[Truth, ...]:
+    def owed_after(self, rows: "Iterable[Row | Mapping[str, Truth]]") -> "tuple[Truth, ...]":
+        """The former name of `obligation_pending_after`; deprecated."""
+        _renamed("owed_after", "obligation_pending_after")
+        return self.obligation_pending_after(rows)
+
+    def _obligation_pending(self) -> "tuple[Truth, ...]":
         if self.tick < 0:
             return (None,) * len(self.REQUIREMENTS)
-        return tuple(map(_owed, self.must.signals(), self.may.signals()))
+        return tuple(map(_obligation_pending, self.must.signals(), self.may.signals()))
 
-    def _after(self, rows: Iterable[Row | Mapping[str, Truth]], read: Callable[[], A]) -> A:
+    def _after(self, rows: "Iterable[Row | Mapping[str, Truth]]", read: "Callable[[], A]") -> A:
         kept = dict(vars(self))
         self.must, self.may = self._copies()
         try:
@@ -376,7 +393,7 @@ class Monitor:
                 return False
         return all(must.is_like(may) for must, may in windows)
 
-    def advance(self, rows: Iterable[Row | Mapping[str, Truth]]) -> None:
+    def advance(self, rows: "Iterable[Row | Mapping[str, Truth]]") -> None:
         """Step every row, in pieces of some thousand: one rail after the other.
 
         An exception leaves the monitor at the end of the last whole piece.
@@ -396,7 +413,7 @@ class Monitor:
                 self.must, self.may = before
                 raise
 
-    def _advance(self, block: list[Row]) -> None:
+    def _advance(self, block: "list[Row]") -> None:
         """Step both rails, or one as long as all is known."""
         if self.may is not self.must:
             self.must.advance(block)
@@ -413,18 +430,18 @@ class Monitor:
                 self._part(before)
                 before.advance(block)
 
-    def _copies(self) -> tuple[Rail, Rail]:
+    def _copies(self) -> "tuple[Rail, Rail]":
         """Both rails as they are now."""
         must = _copied(self.must)
         return must, must if self.may is self.must else _copied(self.may)
 
-    def _in_order(self, rows: list[Any]) -> list[Row]:
+    def _in_order(self, rows: "list[Any]") -> "list[Row]":
         """Rows by name as rows in the order of `PROPOSITIONS`."""
         if not rows or not isinstance(rows[0], Mapping):
             return rows
         return list(map(_picked(tuple(self.PROPOSITIONS)), rows))
 
-    def rows_of(self, names: Sequence[str]) -> Callable[[Iterable[Row]], Iterable[Row]]:
+    def rows_of(self, names: "Sequence[str]") -> "Callable[[Iterable[Row]], Iterable[Row]]":
         """A function that reorders rows with values in the order of `names` for `run`.
 
         Raises:
@@ -432,7 +449,7 @@ class Monitor:
         """
         return rows_in_order(tuple(names), tuple(self.PROPOSITIONS))
 
-    def _row(self, arguments: Mapping[str, Truth]) -> Row:
+    def _row(self, arguments: "Mapping[str, Truth]") -> Row:
         """The arguments of a step that has too many parameters for Python to look for each.
 
         Raises:
@@ -453,8 +470,8 @@ class Monitor:
 
 
 def rows_in_order(
-    names: tuple[str, ...], order: tuple[str, ...]
-) -> Callable[[Iterable[Sequence[Any]]], Iterable[Sequence[Any]]]:
+    names: "tuple[str, ...]", order: "tuple[str, ...]"
+) -> "Callable[[Iterable[Sequence[Any]]], Iterable[Sequence[Any]]]":
     """A function that reorders rows of values from the order of `names` to `order`.
 
     Raises:
@@ -471,7 +488,7 @@ def rows_in_order(
         return lambda rows: rows
     pick = _picked([places[name] for name in order])
 
-    def in_order(rows: Iterable[Sequence[Any]]) -> Iterator[Sequence[Any]]:
+    def in_order(rows: "Iterable[Sequence[Any]]") -> "Iterator[Sequence[Any]]":
         for row in rows:
             if len(row) != len(names):
                 raise ValueError(f"a row has {len(row)} values for {len(names)} names")
@@ -480,7 +497,7 @@ def rows_in_order(
     return in_order
 
 
-def _picked(keys: Sequence[Any]) -> Callable[[Any], tuple[Any, ...]]:
+def _picked(keys: "Sequence[Any]") -> "Callable[[Any], tuple[Any, ...]]":
     """A function that gives the values of all keys as a tuple."""
     if len(keys) < 2:
         return lambda values: tuple(values[key] for key in keys)
@@ -491,40 +508,47 @@ def _standing(
     requirement: Requirement,
     must: Marks,
     may: Marks,
-    certain: Signals[bool],
-    possible: Signals[bool],
+    certain: "Signals[bool]",
+    possible: "Signals[bool]",
 ) -> Standing:
     broken = truth(must.broken >= 0, may.broken >= 0)
     violated = truth(must.violated >= 0, may.violated >= 0)
     opened = must.open if must.open >= 0 else None
     deadline = None
-    if opened is not None and requirement.horizon is not None:
-        deadline = opened + requirement.horizon
+    if opened is not None and requirement.deadline_ticks is not None:
+        deadline = opened + requirement.deadline_ticks
     return Standing(
         requirement.id,
-        at_end(violated, truth(certain.owed, possible.owed), truth(must.last >= 0, may.last >= 0)),
-        finite_verdict(broken, truth(certain.fails, possible.fails)),
+        at_end(
+            violated,
+            truth(certain.obligation_pending, possible.obligation_pending),
+            truth(must.last >= 0, may.last >= 0),
+        ),
+        finite_verdict(broken, truth(certain.violated_if_ended, possible.violated_if_ended)),
         must.violated if must.violated >= 0 else None,
         opened,
         deadline,
-        _owed(certain, possible),
+        _obligation_pending(certain, possible),
     )
 
 
-def _owed(certain: Signals[bool], possible: Signals[bool]) -> Truth:
-    return truth(certain.trigger or certain.owed, possible.trigger or possible.owed)
+def _obligation_pending(certain: "Signals[bool]", possible: "Signals[bool]") -> Truth:
+    return truth(
+        certain.trigger or certain.obligation_pending,
+        possible.trigger or possible.obligation_pending,
+    )
 
 
-def finite_verdict(broken: Truth, fails: Truth) -> Truth:
+def finite_verdict(broken: Truth, violated_if_ended: Truth) -> Truth:
     """FRET's verdict on the finite trace: not violated, and it may end here."""
-    if broken or fails:
+    if broken or violated_if_ended:
         return False
-    return True if broken is False and fails is False else None
+    return True if broken is False and violated_if_ended is False else None
 
 
 def literals_of(
-    monitor: Monitor | type[Monitor], columns: Mapping[str, Column], every: int, doubt: bool
-) -> dict[str, int]:
+    monitor: "Monitor | type[Monitor]", columns: "Mapping[str, Column]", every: int, doubt: bool
+) -> "dict[str, int]":
     """The columns of the literals on one rail."""
     found = {}
     for name, proposition, positive in monitor.LITERALS:
@@ -544,7 +568,7 @@ def _forked(rail: Rail) -> Rail:
     return _with_windows(rail, True, Window.fork)
 
 
-def _with_windows(rail: Rail, doubt: bool, made: Callable[[Window], Window]) -> Rail:
+def _with_windows(rail: Rail, doubt: bool, made: "Callable[[Window], Window]") -> Rail:
     copy = type(rail)(doubt=doubt)
     for name in rail.__slots__:
         if name != "doubt":
@@ -553,7 +577,7 @@ def _with_windows(rail: Rail, doubt: bool, made: Callable[[Window], Window]) -> 
     return copy
 
 
-def _saved(rail: Rail) -> dict[str, Any]:
+def _saved(rail: Rail) -> "dict[str, Any]":
     values = {name: getattr(rail, name) for name in rail.__slots__}
     return {
         name: value.state() if isinstance(value, Window) else value
@@ -561,7 +585,7 @@ def _saved(rail: Rail) -> dict[str, Any]:
     }
 
 
-def _digest(content: Mapping[str, Any]) -> str:
+def _digest(content: "Mapping[str, Any]") -> str:
     """The SHA-256 of a state; equal for tuples and for lists from JSON; empty if it is no JSON."""
     try:
         text = json.dumps(content, sort_keys=True, allow_nan=False)
@@ -570,7 +594,7 @@ def _digest(content: Mapping[str, Any]) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def _restored(rail: Rail, state: Mapping[str, Any]) -> None:
+def _restored(rail: Rail, state: "Mapping[str, Any]") -> None:
     """Put a saved state into a rail; its digest has shown that nothing is missing."""
     for name, value in state.items():
         there = getattr(rail, name)

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, NamedTuple, TextIO
 
 from monitors.kernel.columns import Piece, code, pieces_of
-from monitors.kernel.verdicts import Truth
+from monitors.kernel.verdicts import Truth, same_length
 
 
 class InputError(Exception):
@@ -24,10 +24,10 @@ def visible(text: str) -> str:
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
-_WORDS: dict[str, Truth] = {"": None, "0": False, "1": True, "false": False, "true": True}
+_WORDS: "dict[str, Truth]" = {"": None, "0": False, "1": True, "false": False, "true": True}
 
 
-def read_pieces(text: TextIO, names: Sequence[str], source: str) -> Iterator[Piece]:
+def read_pieces(text: TextIO, names: "Sequence[str]", source: str) -> "Iterator[Piece]":
     """A table, in pieces: CSV with a header, or JSON lines where the first line is an object.
 
     Values are 0, 1, true, false, or nothing (null in JSON): unknown. A column `tick` may count
@@ -45,8 +45,8 @@ def read_pieces(text: TextIO, names: Sequence[str], source: str) -> Iterator[Pie
 
 
 def placed_rows(
-    text: Iterable[str], names: Sequence[str], source: str
-) -> Iterator[tuple[str, dict[str, Any]]]:
+    text: "Iterable[str]", names: "Sequence[str]", source: str
+) -> "Iterator[tuple[str, dict[str, Any]]]":
     """The rows of a table, each with its position; a column `tick` is checked.
 
     Raises:
@@ -59,10 +59,11 @@ def placed_rows(
     return _in_order(_csv_rows(lines, header, source, line), names)
 
 
-def _beginning(text: Iterable[str], source: str) -> tuple[Iterator[str], int, bool]:
+def _beginning(text: "Iterable[str]", source: str) -> "tuple[Iterator[str], int, bool]":
     """The lines from the first non-empty one, its number, and whether the table is JSON."""
     lines = iter(text)
-    lines = itertools.chain([next(lines, "").removeprefix("\ufeff")], lines)
+    first = next(lines, "")  # It may begin with a byte order mark.
+    lines = itertools.chain([first[1:] if first.startswith("\ufeff") else first], lines)
     number, first = next(((i, line) for i, line in enumerate(lines, 1) if line.strip()), (0, ""))
     if not number:
         raise InputError(f"{source}: the trace is empty")
@@ -71,8 +72,8 @@ def _beginning(text: Iterable[str], source: str) -> tuple[Iterator[str], int, bo
 
 
 def _in_order(
-    rows: Iterable[tuple[str, dict[str, Any]]], names: Sequence[str], tick: int | None = None
-) -> Iterator[tuple[str, dict[str, Any]]]:
+    rows: "Iterable[tuple[str, dict[str, Any]]]", names: "Sequence[str]", tick: "int | None" = None
+) -> "Iterator[tuple[str, dict[str, Any]]]":
     """The rows, after a check that a column `tick` increases by one."""
     has_tick: bool | None = None
     for place, row in rows:
@@ -86,15 +87,15 @@ def _in_order(
 
 
 def _truths(
-    rows: Iterable[tuple[str, dict[str, Any]]], names: Sequence[str]
-) -> Iterator[tuple[Truth, ...]]:
+    rows: "Iterable[tuple[str, dict[str, Any]]]", names: "Sequence[str]"
+) -> "Iterator[tuple[Truth, ...]]":
     for place, row in rows:
         yield tuple([_truth(row[name], name, place) for name in names])
 
 
 def _header(
-    lines: Iterable[str], names: Sequence[str], source: str, number: int
-) -> tuple[list[str], int]:
+    lines: "Iterable[str]", names: "Sequence[str]", source: str, number: int
+) -> "tuple[list[str], int]":
     """The column names of a CSV header, and the number of its last line."""
     table = csv.reader(lines, strict=True)
     try:
@@ -106,8 +107,8 @@ def _header(
 
 
 def _csv_rows(
-    lines: Iterable[str], header: Sequence[str], source: str, before: int
-) -> Iterator[tuple[str, dict[str, Any]]]:
+    lines: "Iterable[str]", header: "Sequence[str]", source: str, before: int
+) -> "Iterator[tuple[str, dict[str, Any]]]":
     """The rows of CSV below its header, of which so many lines are before these."""
     table = csv.reader(lines, strict=True)
     try:
@@ -118,14 +119,14 @@ def _csv_rows(
             values = values or [""]
             if len(values) != len(header):
                 raise InputError(f"{place}: {len(values)} values for {len(header)} columns")
-            yield place, dict(zip(header, values, strict=True))
+            yield place, dict(zip(header, values))
     except csv.Error as error:
         raise InputError(f"{source}:{before + table.line_num}: {error}") from None
 
 
 def _json_rows(
-    lines: Iterable[str], names: Sequence[str], source: str, first: int
-) -> Iterator[tuple[str, dict[str, Any]]]:
+    lines: "Iterable[str]", names: "Sequence[str]", source: str, first: int
+) -> "Iterator[tuple[str, dict[str, Any]]]":
     for number, line in enumerate(lines, first):
         if not line.strip():
             continue
@@ -139,7 +140,7 @@ def _json_rows(
         yield f"{source}:{number}", row
 
 
-def _distinct(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+def _distinct(pairs: "list[tuple[str, Any]]") -> "dict[str, Any]":
     found = dict(pairs)
     if len(found) < len(pairs):
         raise ValueError("a key comes twice")
@@ -149,7 +150,7 @@ def _distinct(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 _JSON = json.JSONDecoder(object_pairs_hook=_distinct)
 
 
-def _check_columns(keys: Iterable[str], names: Sequence[str], place: str) -> None:
+def _check_columns(keys: "Iterable[str]", names: "Sequence[str]", place: str) -> None:
     columns = list(keys)
     for name in names:
         if name not in columns:
@@ -180,7 +181,7 @@ def _truth(value: Any, name: str, place: str) -> Truth:
     return _WORDS[word]
 
 
-def _next_tick(value: Any, before: int | None, place: str) -> int:
+def _next_tick(value: Any, before: "int | None", place: str) -> int:
     text = str(value)
     if not _WHOLE.fullmatch(text):
         raise InputError(f"{place}: column `tick`: `{_short(text)}` is no whole number")
@@ -204,14 +205,14 @@ class _Block(NamedTuple):
     """The lines of a text, as a piece of the trace."""
 
     lines: int
-    tick: int | None
+    tick: "int | None"
     """In the last row, by the column `tick`."""
     piece: Piece
 
 
 def _csv_pieces(
-    text: TextIO, header: Sequence[str], names: Sequence[str], source: str, line: int
-) -> Iterator[Piece]:
+    text: TextIO, header: "Sequence[str]", names: "Sequence[str]", source: str, line: int
+) -> "Iterator[Piece]":
     """CSV below its header, which ends in that line.
 
     Where a piece leaves a doubt it is read row by row, and so is all that follows: that is slower,
@@ -231,7 +232,9 @@ def _csv_pieces(
         yield block.piece
 
 
-def _block(part: str, header: Sequence[str], names: Sequence[str], tick: int | None) -> _Block:
+def _block(
+    part: str, header: "Sequence[str]", names: "Sequence[str]", tick: "int | None"
+) -> _Block:
     """Whole lines of CSV, which follow the row with that tick.
 
     Raises:
@@ -240,22 +243,24 @@ def _block(part: str, header: Sequence[str], names: Sequence[str], tick: int | N
     width, has_tick = len(header), "tick" in header and "tick" not in names
     codes = None if has_tick else _digits(part, width)
     if codes:
-        named = dict(zip(header, codes, strict=True))
+        named = dict(zip(header, codes))
         rows = len(codes[0])
         return _Block(rows, None, Piece(rows, [named[name] for name in names]))
     table = csv.reader(io.StringIO(part, newline=""), strict=True)
     values = [row or [""] for row in table if row or width == 1]
-    columns = list(zip(*values, strict=True)) or [()] * width
-    cells = dict(zip(header, columns, strict=True))
+    same_length(header, *values)
+    columns = list(zip(*values)) or [()] * width
+    cells = dict(zip(header, columns))
     if has_tick:
         tick = _last_tick(cells["tick"], tick)
     piece = Piece(len(values), [_codes(cells[name]) for name in names])
     return _Block(table.line_num, tick, piece)
 
 
-def _digits(part: str, width: int) -> list[bytes] | None:
+def _digits(part: str, width: int) -> "list[bytes] | None":
     """The codes of every column, if each cell is one digit: 0 or 1."""
-    text = part.encode().replace(b"\r\n", b"\n").removesuffix(b"\n") + b"\n"
+    text = part.encode().replace(b"\r\n", b"\n")
+    text = text if text.endswith(b"\n") else text + b"\n"
     cells, separators = text[::2], text[1::2]
     rows = len(separators) // width
     if separators != (b"," * (width - 1) + b"\n") * rows or cells.strip(b"01"):
@@ -267,13 +272,13 @@ def _digits(part: str, width: int) -> list[bytes] | None:
 _CODES = bytes.maketrans(b"01", b"\0\1")
 
 
-def _codes(words: Sequence[str]) -> bytes:
+def _codes(words: "Sequence[str]") -> bytes:
     """The codes of truth values."""
     known = {word: code(_WORDS[word.strip().lower()]) for word in set(words)}
     return bytes(map(known.__getitem__, words))
 
 
-def _last_tick(words: Sequence[str], before: int | None) -> int | None:
+def _last_tick(words: "Sequence[str]", before: "int | None") -> "int | None":
     """The last tick, if ticks increase by one and have no leading zeros; else None."""
     if not words:
         return before

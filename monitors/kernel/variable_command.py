@@ -12,7 +12,7 @@ from monitors.kernel.variables import VariableMonitor, rows_of_truth
 
 
 def main_by_variables(
-    monitor: type[VariableMonitor], arguments: Sequence[str] | None = None
+    monitor: "type[VariableMonitor]", arguments: "Sequence[str] | None" = None
 ) -> int:
     """Run the monitor over tables of variables and print the verdicts.
 
@@ -20,7 +20,7 @@ def main_by_variables(
         As `judge`.
     """
 
-    def read(text: TextIO, source: str, options: argparse.Namespace) -> Iterable[Piece]:
+    def read(text: TextIO, source: str, options: argparse.Namespace) -> "Iterable[Piece]":
         if options.propositions:
             return read_pieces(text, tuple(monitor.PROPOSITIONS), source)
         rows = read_variables(text, monitor.VARIABLES, source)
@@ -29,7 +29,7 @@ def main_by_variables(
     return judge(monitor, _parser_by_variables(monitor), read, arguments)
 
 
-def _parser_by_variables(monitor: type[VariableMonitor]) -> argparse.ArgumentParser:
+def _parser_by_variables(monitor: "type[VariableMonitor]") -> argparse.ArgumentParser:
     parser = _parser(monitor)
     parser.epilog = _literal(
         f"columns: {', '.join(monitor.VARIABLES)}\n"

@@ -14,8 +14,8 @@ _MOST_DIGITS = 30
 
 
 def read_variables(
-    text: Iterable[str], variables: Mapping[str, Variable], source: str
-) -> Iterator[tuple[Value, ...]]:
+    text: "Iterable[str]", variables: "Mapping[str, Variable]", source: str
+) -> "Iterator[tuple[Value, ...]]":
     """The rows of a table of variables, each a column; the rest is as `read_rows` has it.
 
     A number is written as `17.5`, `-3`, `1e-3`, `inf`; nothing (null in JSON) is unknown, and
@@ -38,7 +38,7 @@ def _value(value: Any, name: str, variable: Variable, place: str) -> Value:
     return _number(value, name, place)
 
 
-def _word(value: Any, name: str, words: tuple[str, ...], place: str) -> str:
+def _word(value: Any, name: str, words: "tuple[str, ...]", place: str) -> str:
     text = str(value)
     if text not in words:  # spaces around a cell are none of it, unless they are of a word
         text = text.strip()
@@ -50,8 +50,8 @@ def _word(value: Any, name: str, words: tuple[str, ...], place: str) -> str:
     return text
 
 
-def _number(value: Any, name: str, place: str) -> float | None:
-    if isinstance(value, int | float) and not isinstance(value, bool):
+def _number(value: Any, name: str, place: str) -> "float | None":
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
         return value
     text = str(value).strip()
     if text.lower() in _OTHER_NUMBERS:

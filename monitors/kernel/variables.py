@@ -5,13 +5,13 @@ Its rails see the truth of comparisons, as every monitor's see that of propositi
 
 import itertools
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple, Union
 
 from monitors.kernel.readings import Reading, Single
 from monitors.kernel.stepping import Monitor, _digest, rows_in_order
 from monitors.kernel.verdicts import Truth
 
-Value = float | str | bool | None
+Value = Union[float, str, bool, None]
 """The value of a variable at a tick; None is unknown."""
 
 
@@ -22,9 +22,9 @@ class Variable(NamedTuple):
     """The name of its parameter of `step`."""
     kind: str
     """`number`, `truth` or `word`."""
-    words: tuple[str, ...] = ()
+    words: "tuple[str, ...]" = ()
     """The words of an enumeration."""
-    infinite: tuple[str, ...] = ()
+    infinite: "tuple[str, ...]" = ()
     """The infinities that are values of a number: `+inf`, `-inf`; others are unknown."""
 
 
@@ -35,12 +35,12 @@ _ROWS = 4096
 class VariableMonitor(Monitor):
     """Steps variables and gives verdicts; `advance` takes the truth of `PROPOSITIONS` as ever."""
 
-    VARIABLES: ClassVar[Mapping[str, Variable]]
+    VARIABLES: ClassVar["Mapping[str, Variable]"]
     """The variables of a step, by their names in the sentences."""
-    truths: Callable[..., tuple[Truth, ...]]
+    truths: "Callable[..., tuple[Truth, ...]]"
     """The truth of `PROPOSITIONS`, from a value for each of `VARIABLES`; once a tick, for it keeps
     what the next tick looks back at."""
-    kept: tuple[Reading, ...] | None
+    kept: "tuple[Reading, ...] | None"
     """The values that the next tick looks back at; None before the first tick."""
 
     def reset(self) -> None:
@@ -48,7 +48,7 @@ class VariableMonitor(Monitor):
         super().reset()
         self.kept = None
 
-    def take(self, rows: Iterable[Sequence[Value] | Mapping[str, Value]]) -> None:
+    def take(self, rows: "Iterable[Sequence[Value] | Mapping[str, Value]]") -> None:
         """Step every row of variables, in pieces of some thousand.
 
         An exception leaves the monitor at the end of the last whole piece.
@@ -67,7 +67,7 @@ class VariableMonitor(Monitor):
                 self.kept = kept
                 raise
 
-    def rows_of(self, names: Sequence[str]) -> Callable[[Iterable[Any]], Iterable[Any]]:
+    def rows_of(self, names: "Sequence[str]") -> "Callable[[Iterable[Any]], Iterable[Any]]":
         """A function that reorders rows with values in the order of `names` for `run`.
 
         Raises:
@@ -75,7 +75,7 @@ class VariableMonitor(Monitor):
         """
         return rows_in_order(tuple(names), tuple(self.VARIABLES))
 
-    def _by_variable(self, rows: list[Any]) -> Iterator[Sequence[Value]]:
+    def _by_variable(self, rows: "list[Any]") -> "Iterator[Sequence[Value]]":
         """Rows by name as rows in the order of `VARIABLES`."""
         names = tuple(self.VARIABLES)
         for row in rows:
@@ -86,14 +86,14 @@ class VariableMonitor(Monitor):
             else:
                 raise ValueError(f"a row has {len(row)} values for {len(names)} variables")
 
-    def state(self) -> dict[str, Any]:
+    def state(self) -> "dict[str, Any]":
         """The whole memory, as plain values that JSON can hold."""
         content = super().state()
         del content["sha256"]
         content["kept"] = None if self.kept is None else [_plain_value(v) for v in self.kept]
         return {**content, "sha256": _digest(content)}
 
-    def restore(self, state: Mapping[str, Any]) -> None:
+    def restore(self, state: "Mapping[str, Any]") -> None:
         """Go on from what `state` gave.
 
         Raises:
@@ -108,8 +108,8 @@ class VariableMonitor(Monitor):
 
 
 def rows_of_truth(
-    monitor: type[VariableMonitor], rows: Iterable[Sequence[Value]]
-) -> Iterator[tuple[Truth, ...]]:
+    monitor: "type[VariableMonitor]", rows: "Iterable[Sequence[Value]]"
+) -> "Iterator[tuple[Truth, ...]]":
     """The truth of `PROPOSITIONS` at each tick of a whole trace, from rows of `VARIABLES`."""
     alone = monitor()
     return (alone.truths(*row) for row in rows)
@@ -118,15 +118,15 @@ def rows_of_truth(
 _SINGLE = "single "
 
 
-def _plain_value(reading: Reading) -> int | str | None:
+def _plain_value(reading: Reading) -> "int | str | None":
     """A number as JSON without loss; JSON has no infinities."""
     if reading is None or isinstance(reading, int):
         return reading
     return f"{_SINGLE if isinstance(reading, Single) else ''}{reading.hex()}"
 
 
-def _reading(value: int | str | None) -> Reading:
+def _reading(value: "int | str | None") -> Reading:
     if not isinstance(value, str):
         return value
     kind = Single if value.startswith(_SINGLE) else float
-    return kind(float.fromhex(value.removeprefix(_SINGLE)))
+    return kind(float.fromhex(value.replace(_SINGLE, "", 1)))

@@ -1,9 +1,10 @@
 """Three-valued truth, verdicts, and the signals of a requirement at each tick."""
 
+from collections.abc import Sized
 from enum import Enum
-from typing import Any, Generic, NamedTuple, TypeVar
+from typing import Any, Generic, NamedTuple, Optional, TypeVar
 
-Truth = bool | None
+Truth = Optional[bool]
 """True, False, or None: unknown."""
 
 
@@ -19,7 +20,7 @@ def boolean(value: object, name: str = "") -> bool:
     raise TypeError(f"{subject} is True, False or None (unknown), not {value!r}")
 
 
-class Verdict(str, Enum):  # Python 3.10 has no StrEnum
+class Verdict(str, Enum):  # Python 3.8 has no StrEnum
     """The judgement of a trace on a requirement.
 
     While it runs: satisfied or violated, whatever follows, or pending (LTL3). When it has ended:
@@ -48,15 +49,15 @@ T = TypeVar("T")
 class _Signals(NamedTuple):
     trigger: Any
     """An obligation begins at this tick."""
-    breach: Any
+    violation: Any
     """An obligation is violated at this tick, for every continuation."""
-    doom: Any
+    violation_inevitable: Any
     """No infinite continuation meets the open obligations, though none is violated yet."""
-    owed: Any
+    obligation_pending: Any
     """An obligation is open after this tick (if none was violated before)."""
-    fails: Any
+    violated_if_ended: Any
     """The trace would violate the requirement if it ended here, though nothing is violated yet."""
-    settled: Any
+    satisfied_forever: Any
     """No continuation can violate the requirement."""
     answer: Any
     """The response to a pending obligation is true at this tick."""
@@ -65,7 +66,7 @@ class _Signals(NamedTuple):
 class Signals(_Signals, Generic[T]):
     """A monitor's signals of one requirement: truth values at a tick, or columns of them.
 
-    Each field is a `T`; a NamedTuple cannot be generic in Python 3.10.
+    Each field is a `T`; a NamedTuple cannot be generic in Python 3.8.
     """
 
     __slots__ = ()
@@ -78,8 +79,18 @@ class Requirement(NamedTuple):
     sentence: str
     fingerprint: str
     """SHA-256 of the canonical sentence."""
-    horizon: int | None
+    deadline_ticks: "int | None"
     """Ticks from a trigger to its deadline; None if there is no deadline."""
+
+
+def same_length(*parts: Sized) -> None:
+    """Check what `zip(strict=True)` checks, which Python 3.8 does not have.
+
+    Raises:
+        ValueError: a part has more or fewer items than another.
+    """
+    if len({*map(len, parts)}) > 1:
+        raise ValueError("there are more or fewer values than expected")
 
 
 def truth(must: bool, may: bool) -> Truth:
@@ -87,12 +98,12 @@ def truth(must: bool, may: bool) -> Truth:
     return must if must == may else None
 
 
-def at_end(broken: Truth, owed: Truth, triggered: Truth) -> Verdict:
+def at_end(broken: Truth, pending: Truth, triggered: Truth) -> Verdict:
     """The verdict on a trace that ends at this tick."""
     if broken is not False:
         return VIOLATED if broken else NO_DATA
-    if owed is not False:
-        return INCONCLUSIVE if owed else NO_DATA
+    if pending is not False:
+        return INCONCLUSIVE if pending else NO_DATA
     if triggered is not False:
         return SATISFIED if triggered else NO_DATA
     return VACUOUS

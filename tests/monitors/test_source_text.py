@@ -10,7 +10,7 @@ from monitors.source_text import kernel_of_variables, perception
 
 @pytest.mark.parametrize(
     ("text", "one"),
-    [(kernel_of_variables().text, "Listing"), (perception().text, "Voice")],
+    [(kernel_of_variables().text, "Listing"), (perception().text, "StatusPublisher")],
     ids=["monitor", "perception"],
 )
 def test_no_two_modules_of_the_run_time_define_one_name(text: str, one: str) -> None:

@@ -78,5 +78,5 @@ def _ranges(printer: CPrinter) -> Iterator[_Range]:
 
 
 def _told(reading: RequirementValues) -> dict[str, object]:
-    horizon = -1 if reading.deadline is None else reading.deadline.horizon
-    return {"prefix": reading.prefix, "horizon": horizon, "truths": [*reading.truths]}
+    deadline_ticks = -1 if reading.deadline is None else reading.deadline.deadline_ticks
+    return {"prefix": reading.prefix, "deadline_ticks": deadline_ticks, "truths": [*reading.truths]}

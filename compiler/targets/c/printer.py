@@ -66,9 +66,9 @@ class CPrinter(Statements):
         """
         if deadline is None:
             return "-1"
-        counter, horizon = f"rail->{deadline.counter}", deadline.horizon
-        ahead = f"({counter} >= 0) & ({counter} <= {horizon})"
-        return f"({self.grouped(is_open)} & {ahead}) ? ({horizon} - {counter}) : -1"
+        counter, ticks = f"rail->{deadline.counter}", deadline.deadline_ticks
+        ahead = f"({counter} >= 0) & ({counter} <= {ticks})"
+        return f"({self.grouped(is_open)} & {ahead}) ? ({ticks} - {counter}) : -1"
 
 
 def _members(cell: Cell) -> Iterable[StructMember]:

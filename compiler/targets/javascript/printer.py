@@ -6,6 +6,7 @@ begins so, and none is a key word.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple, assert_never
@@ -76,9 +77,9 @@ class JavaScriptPrinter:
                 assert_never(cell)
 
     def signals(self, requirement: RequirementProgram) -> dict[str, str]:
-        """The signals of a requirement."""
+        """The signals of a requirement, by their names in JavaScript."""
         return {
-            name: self._value(signal_value).text
+            _camel_case(name): self._value(signal_value).text
             for name, signal_value in requirement.signals._asdict().items()
         }
 
@@ -145,3 +146,8 @@ class JavaScriptPrinter:
                 )
             case _:
                 assert_never(value)
+
+
+def _camel_case(name: str) -> str:
+    """`violation_inevitable` as `violationInevitable`."""
+    return re.sub("_(.)", lambda letter: letter[1].upper(), name)

@@ -23,7 +23,7 @@ from fretish.units import unit
 
 NUMBER, TRUTH, WORD = "number", "truth", "word"
 """The kinds of variables."""
-ANNOTATIONS: Mapping[str, str] = {NUMBER: "Number", TRUTH: "Truth", WORD: "str | None"}
+ANNOTATIONS: Mapping[str, str] = {NUMBER: "Number", TRUTH: "Truth", WORD: '"str | None"'}
 """The annotation of a parameter for each kind of variable."""
 
 

@@ -1,8 +1,8 @@
 """The Python code that turns messages into propositions in a live node, from the bindings.
 
-The text of `monitors/voice.py` and of its dependencies is copied in. Below stands one table,
-`SETTING`: a policy for each signal and a meaning for each proposition, whose expressions call the
-functions of `monitors.kernel.readings`, as `compiler.signals` defines them.
+The text of `monitors/status_publisher.py` and of its dependencies is copied in. Below stands one
+table, `SETTING`: a policy for each signal and a meaning for each proposition, whose expressions
+call the functions of `monitors.kernel.readings`, as `compiler.signals` defines them.
 """
 
 from __future__ import annotations
@@ -221,7 +221,7 @@ def _meaning(meaning: PropositionFunctions) -> str:
     texts["aggregate"] = repr(str(meaning.aggregate))
     signals = tuple(dict.fromkeys(signals_of(meaning)))
     head = [repr(meaning.name), repr(signals), f"lambda row, held: {_truth(meaning.truth)}"]
-    return f"Meaning({', '.join([*head, *_named(texts)])})"
+    return f"PropositionSpec({', '.join([*head, *_named(texts)])})"
 
 
 def _named(texts: dict[str, str]) -> Iterator[str]:

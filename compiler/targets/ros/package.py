@@ -1,7 +1,8 @@
 """The common parts of ROS 1 and ROS 2 packages: their description, and shared files.
 
 The printers `ros1.py` and `ros2.py` write only what the middleware asks for: manifests, launch
-files, and the node that gives messages to `Guard` of `perception.py` and publishes what it says.
+files, and the node that gives messages to `StopSupervisor` of `perception.py` and publishes what it
+says.
 """
 
 from __future__ import annotations
@@ -27,8 +28,8 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source, Span
 from fretish.expressions import names
-from monitors.guard import LONGEST
-from monitors.voice import LONGEST_BEAT, SHORTEST
+from monitors.status_publisher import LONGEST_BEAT, SHORTEST
+from monitors.stop_supervisor import LONGEST
 
 
 @dataclass(frozen=True, slots=True)
@@ -266,7 +267,7 @@ def _parameters(
     yield Parameter(
         "stop_for",
         _deciding(requirements, options),
-        "the requirements that stop the robot while owed",
+        "the requirements that stop the robot while an obligation of them is pending",
     )
 
 

@@ -38,7 +38,7 @@ _TEMPLATES = {
     "package.xml": "package.xml.j2",
     "CMakeLists.txt": "CMakeLists.txt.j2",
     "src/perception.hpp": "perception.hpp.j2",
-    "src/guard.hpp": "guard.hpp.j2",
+    "src/stop_supervisor.hpp": "stop_supervisor.hpp.j2",
     "src/setting.hpp": "setting.hpp.j2",
     "src/node.cpp": "node.cpp.j2",
     "test/test_monitors.cpp": "test_monitors.cpp.j2",

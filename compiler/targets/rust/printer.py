@@ -74,7 +74,7 @@ class RustPrinter(Statements):
         if deadline is None:
             return "None"
         condition = f"{self.grouped(is_open)} & (self.{deadline.counter} >= 0)"
-        ticks = f"u32::try_from({deadline.horizon} - self.{deadline.counter}).ok()"
+        ticks = f"u32::try_from({deadline.deadline_ticks} - self.{deadline.counter}).ok()"
         return f"if {condition} {{ {ticks} }} else {{ None }}"
 
 

@@ -97,7 +97,7 @@ class Counterstrategy:
             inputs = self._inputs(state, promise, self._traps[trap])
             options = self._options(state, inputs)
             if options == bdd.false():
-                runs.add(self._followed(inputs | self._breach(state, inputs)))
+                runs.add(self._followed(inputs | self._violation(state, inputs)))
                 return GameTrace(runs.all, None, state, self._numbers)
             letter = self._followed(inputs | self._resistance(options, state, inputs, trap))
             before, state = state, self._game.transition.next(bdd.point({**state, **letter}))
@@ -186,7 +186,7 @@ class Counterstrategy:
         none_left = _first(lambda number: ways(number) == bdd.false(), len(self._traps))
         return whole(ways(none_left - 1) if none_left else options, variables)
 
-    def _breach(self, state: State, inputs: Letter) -> dict[int, bool]:
+    def _violation(self, state: State, inputs: Letter) -> dict[int, bool]:
         """Outputs that violate as few requirements as possible."""
         known = bdd.point({**state, **inputs})
         options = bdd.at(self._game.reachable, known) & self._possible(inputs)

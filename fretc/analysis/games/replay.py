@@ -82,12 +82,14 @@ def _is_broken(
     as_fret: bool,
 ) -> bool:
     ticks = sum(count for _, count in runs)
-    breach, fails = _watched((requirement.watch.breach, requirement.watch.fails), alphabet, runs)
+    violation, violated_if_ended = _watched(
+        (requirement.watch.violation, requirement.watch.violated_if_ended), alphabet, runs
+    )
     last = 1 << ticks - 1
     if loop is None:
-        return bool((breach | (fails if as_fret else 0)) & last)
+        return bool((violation | (violated_if_ended if as_fret else 0)) & last)
     rounds = ((1 << ticks) - 1) >> loop << loop
-    return breach == 0 and fails & rounds == rounds
+    return violation == 0 and violated_if_ended & rounds == rounds
 
 
 def kept(
@@ -112,10 +114,16 @@ def kept(
     """
     end = ((1 << tail) - 1) << len(letters) - tail
     for requirement in requirements:
-        signals = (requirement.watch.breach, requirement.watch.doom, requirement.watch.fails)
-        breach, doom, fails = _watched(signals, alphabet, [(letter, 1) for letter in letters])
-        is_open = requirement.id in waiting and fails & end == end
-        if breach or (fails if as_fret else doom or is_open):
+        signals = (
+            requirement.watch.violation,
+            requirement.watch.violation_inevitable,
+            requirement.watch.violated_if_ended,
+        )
+        violation, violation_inevitable, violated_if_ended = _watched(
+            signals, alphabet, [(letter, 1) for letter in letters]
+        )
+        is_open = requirement.id in waiting and violated_if_ended & end == end
+        if violation or (violated_if_ended if as_fret else violation_inevitable or is_open):
             return False
     return True
 

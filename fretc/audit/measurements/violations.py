@@ -41,7 +41,7 @@ class DemandText:
 
     response: str = ""
     """The text of the expression that must be true, as the sentence writes it."""
-    horizon: int | None = None
+    deadline_ticks: int | None = None
     """Ticks from a trigger to the latest response; None: there is no deadline."""
 
 
@@ -77,7 +77,7 @@ class ViolationInterval:
 def violations(
     outcome: Outcome,
     demand: DemandText,
-    horizon: int | None,
+    deadline_ticks: int | None,
     at: Callable[[int], Moment],
     recording: Recording,
     signals: Sequence[str],
@@ -87,7 +87,7 @@ def violations(
     Args:
         outcome: the outcome of the monitor.
         demand: the demand of the requirement.
-        horizon: ticks after which a trigger demands nothing any more; None: there is no such end.
+        deadline_ticks: ticks after which a trigger demands nothing any more; None: never.
         at: the moment of a tick.
         recording: the recording with the samples of the signals.
         signals: the signals that the sentence reads.
@@ -95,8 +95,12 @@ def violations(
     answers, triggers = dict(outcome.answers), tuple(outcome.triggers)
     stretches = []
     for place, (first, last) in enumerate(outcome.violations):
-        trigger = _cause(outcome, triggers, answers, horizon, first)
-        deadline = None if trigger is None or demand.horizon is None else trigger + demand.horizon
+        trigger = _cause(outcome, triggers, answers, deadline_ticks, first)
+        deadline = (
+            None
+            if trigger is None or demand.deadline_ticks is None
+            else trigger + demand.deadline_ticks
+        )
         due = at(deadline) if deadline is not None and deadline < outcome.ticks else None
         begin, broken = None if trigger is None else at(trigger), at(first)
         window = (
@@ -115,17 +119,17 @@ def _cause(
     outcome: Outcome,
     triggers: Sequence[int],
     answers: Mapping[int, int],
-    horizon: int | None,
+    deadline_ticks: int | None,
     first: int,
 ) -> int | None:
     """The oldest trigger whose demand can be the one that is broken at tick `first`.
 
-    It is one within the horizon without an answer up to then; without a horizon, and if the demand
-    is not open at the end either, the last trigger.
+    It is one within `deadline_ticks` without an answer up to then; without a deadline, and if the
+    demand is not open at the end either, the last trigger.
     """
     upto = bisect_right(triggers, first)
-    if horizon is not None:
-        oldest = bisect_right(triggers, first - horizon - 1)
+    if deadline_ticks is not None:
+        oldest = bisect_right(triggers, first - deadline_ticks - 1)
         for trigger in triggers[oldest:upto]:
             if answers.get(trigger, first + 1) > first:
                 return trigger

@@ -61,11 +61,11 @@ def falsity(violation: Violation, result: Result, requirement: FormalizedRequire
     when = interval_words(violation.first, violation.last, result.clock)
     match requirement.sentence.timing:
         case s.Within():
-            horizon = requirement.ticks or 0
+            deadline_ticks = requirement.ticks or 0
             trigger, deadline = violation.trigger, violation.deadline
             if trigger is None or deadline is None or deadline.tick > violation.first_tick:
                 return ""
-            if trigger.tick < violation.first_tick - horizon:
+            if trigger.tick < violation.first_tick - deadline_ticks:
                 return ""
             since, due = phrases.seconds(trigger.seconds), phrases.seconds(deadline.seconds)
             end = end_s(violation.last, result.clock)

@@ -135,7 +135,7 @@ class RequirementGroup:
         if situation.at_end:
             return self._aim(requirement, situation, Polarity.KEPT, situation.formula)
         seen = f.once(situation.formula)
-        done = f.and_(seen, f.not_(requirement.watch.owed))
+        done = f.and_(seen, f.not_(requirement.watch.obligation_pending))
         return self._aim(requirement, situation, Polarity.KEPT, done, seen)
 
     def _broken_aim(self, requirement: FormalizedRequirement, situation: Situation) -> TargetState:

@@ -28,9 +28,9 @@ class RailReading(NamedTuple):
     violated: int
     failed: int
     trigger: int
-    breach: int
+    violation: int
     open: int
-    settled: int
+    satisfied_forever: int
     answer: int
 
 
@@ -38,7 +38,7 @@ VERDICTS = ("pending", "satisfied", "violated")
 """Verdicts in the order of their numbers."""
 NAMES = (
     *(f"value of `{name}`" for name in RailReading._fields),
-    "verdict, or what is owed, from the two readings",
+    "verdict, or what is pending, from the two readings",
 )
 """Names of the values that a step returns."""
 
@@ -48,11 +48,11 @@ def judged(certain: RailReading, possible: RailReading) -> tuple[str, Truth, Tru
     if certain.violated == 1:
         verdict = "violated"
     else:
-        settled = certain.settled == 1 and possible.violated == 0
-        verdict = "satisfied" if settled else "pending"
+        forever = certain.satisfied_forever == 1 and possible.violated == 0
+        verdict = "satisfied" if forever else "pending"
     finite: Truth = False if certain.failed == 1 else None if possible.failed == 1 else True
-    is_owed, may_be = (1 in (each.trigger, each.open) for each in (certain, possible))
-    return verdict, finite, False if not may_be else True if is_owed else None
+    is_pending, may_be = (1 in (each.trigger, each.open) for each in (certain, possible))
+    return verdict, finite, False if not may_be else True if is_pending else None
 
 
 class PythonRail:
@@ -76,15 +76,15 @@ class PythonRail:
         """
         self._rail: Any = monitor.RAIL(doubt=doubt)
         self._cells = RailState(self._rail)
-        self._horizon = monitor.REQUIREMENTS[0].horizon
+        self._deadline_ticks = monitor.REQUIREMENTS[0].deadline_ticks
         self._order = tuple(atoms.index(name) for name in monitor.PROPOSITIONS)
         (prefix,) = (n[: -len("_open")] for n in self._rail.__slots__ if n.endswith("_open"))
         self._names = {mark: f"{prefix}_{mark}" for mark in MARKS}
         (entry,) = program({requirement.id: requirement.watch}).requirements
-        self._ages: tuple[str, ...] = () if self._horizon is None else ("open",)
+        self._ages: tuple[str, ...] = () if self._deadline_ticks is None else ("open",)
         if entry.renewed and self._ages:
             self._ages = ("open", "last")
-        self._now = 0 if self._horizon is None else self._horizon + 2
+        self._now = 0 if self._deadline_ticks is None else self._deadline_ticks + 2
 
     def windows(self) -> list[Any]:
         """Windows of the rail, in the order of the text."""
@@ -97,7 +97,7 @@ class PythonRail:
 
     def save(self) -> Hashable:
         """Cells, whether the requirement is violated or will be, and the age of an obligation."""
-        latched = tuple(self._mark(name) >= 0 for name in ("broken", "doomed"))
+        latched = tuple(self._mark(name) >= 0 for name in ("broken", "violation_inevitable"))
         ages = tuple([self._age(name) for name in self._ages])
         return self._cells.save(), latched, ages
 
@@ -107,13 +107,13 @@ class PythonRail:
         self._cells.load(cells)
         self._rail.tick = self._now
         values: Mapping[str, int] = dict(zip(self._ages, ages, strict=True))
-        for name, is_on in zip(("broken", "doomed"), latched, strict=True):
+        for name, is_on in zip(("broken", "violation_inevitable"), latched, strict=True):
             setattr(self._rail, self._names[name], 0 if is_on else -1)
         for name in ("open", "last"):
             age = values.get(name, -1)
             setattr(self._rail, self._names[name], self._now - age if age >= 0 else -1)
         self._rail.advance((tuple([letter[place] for place in self._order]),))
-        return (*reading_of(self._rail, self._horizon), True)
+        return (*reading_of(self._rail, self._deadline_ticks), True)
 
     def _mark(self, name: str) -> int:
         return int(getattr(self._rail, self._names[name]))
@@ -121,29 +121,29 @@ class PythonRail:
     def _age(self, name: str) -> int:
         """Age in ticks, at most one more than matters; -1: there is none."""
         tick = self._mark(name)
-        assert self._horizon is not None
-        return min(self._rail.tick - tick, self._horizon + 1) if tick >= 0 else -1
+        assert self._deadline_ticks is not None
+        return min(self._rail.tick - tick, self._deadline_ticks + 1) if tick >= 0 else -1
 
 
-def reading_of(rail: Any, horizon: int | None) -> RailReading:
+def reading_of(rail: Any, deadline_ticks: int | None) -> RailReading:
     """The reading of a rail in Python for its only requirement.
 
     Args:
         rail: the rail after a tick.
-        horizon: ticks from a trigger to its deadline; None: there is none.
+        deadline_ticks: ticks from a trigger to its deadline; None: there is none.
     """
     signals, marks = rail.signals()[0], rail.marks()[0]
     left = -1
-    if marks.open >= 0 and horizon is not None:
-        left = max(-1, marks.open + horizon - rail.tick)
+    if marks.open >= 0 and deadline_ticks is not None:
+        left = max(-1, marks.open + deadline_ticks - rail.tick)
     return RailReading(
         left,
         marks.violated >= 0,
-        bool(marks.broken >= 0 or signals.fails),
+        bool(marks.broken >= 0 or signals.violated_if_ended),
         bool(signals.trigger),
-        bool(signals.breach),
-        bool(signals.owed),
-        bool(signals.settled),
+        bool(signals.violation),
+        bool(signals.obligation_pending),
+        bool(signals.satisfied_forever),
         bool(signals.answer),
     )
 
@@ -160,7 +160,7 @@ class PythonJudging:
         """
         self._machine = Stepped(monitor, 0, atoms)
         self._rail: Any = monitor.must
-        self._horizon = monitor.REQUIREMENTS[0].horizon
+        self._deadline_ticks = monitor.REQUIREMENTS[0].deadline_ticks
 
     def save(self) -> Hashable:
         """All cells."""
@@ -173,7 +173,7 @@ class PythonJudging:
     def step(self, letter: Valuation) -> Judgement:
         """Both verdicts after a tick; no verdict if they do not follow from the reading."""
         judgement = self._machine.step(letter)
-        reading = reading_of(self._rail, self._horizon)
+        reading = reading_of(self._rail, self._deadline_ticks)
         verdict, finite, _ = judged(reading, reading)
         follows = judgement == (verdict, finite is True)
         return judgement if follows else ("no verdict of its reading", judgement[1])

@@ -2,10 +2,10 @@
 
 The allowed syntax is listed here, and everything else is refused before anything is executed. There
 is no loop and no recursion, so every step ends; no attribute is written, no name bound twice,
-nothing called except the core's own functions and constructors, `min`, `max` and `replace`, and no
-function is a value. No statement distinguishes equal objects, and `ZERO` is the only constant that
-is read, so that a state is the values of its fields. Annotations only name types, because other
-programs evaluate them.
+nothing called except the core's own functions and constructors, `min`, `max`, `replace` and
+`isinstance`, and no function is a value. No statement distinguishes equal objects, and `ZERO` is
+the only constant that is read, so that a state is the values of its fields. Annotations only name
+types, because other programs evaluate them.
 """
 
 from __future__ import annotations
@@ -31,6 +31,8 @@ _CALLED = _CHOSEN | {"replace"}
 _TYPES = frozenset({"bool", "int", "float"})
 _NOT_FIELDS = frozenset(name for kind in (bool, int, float, tuple, str) for name in dir(kind))
 """Attributes of numbers and tuples. Methods distinguish equal numbers: `x.real is y.real`."""
+_KINDS = (["dataclass(frozen=True)"], ["dataclass(frozen=True, slots=True)"], ["NamedTuple"])
+"""Decorators or bases of a class; Python 3.8 has no `slots`."""
 _UNARY = (ast.Not, ast.USub)
 _COMPARED = (ast.Lt, ast.LtE, ast.Gt, ast.GtE, ast.Eq, ast.NotEq)
 
@@ -165,7 +167,7 @@ class _Module:
     def _class(self, node: ast.ClassDef) -> None:
         """Check a class: fields with or without a constant, in a frozen dataclass or NamedTuple."""
         written = [ast.unparse(part) for part in (*node.decorator_list, *node.bases)]
-        _demand(written in (["dataclass(frozen=True, slots=True)"], ["NamedTuple"]), node)
+        _demand(written in _KINDS, node)
         _demand(len(node.bases) == (written == ["NamedTuple"]) and not node.keywords, node)
         _demand(bool(node.bases) == (node.name == "Velocity"), node)
         _demand(not getattr(node, "type_params", ()), node)
@@ -189,6 +191,8 @@ class _Module:
                 pass
             case ast.Name(name):
                 _demand(name in _TYPES or name in self.classes, node)
+            case ast.Constant(str(text)):  # Python 3.8 cannot evaluate `|` and `tuple[...]`.
+                self.check_type(_parsed(text, node), node)
             case ast.BinOp(left, ast.BitOr(), right):
                 self.check_type(left, node)
                 self.check_type(right, node)
@@ -215,6 +219,13 @@ class _Module:
             visited.add(name)
             name = min(self.functions[name] & rest)
         return name
+
+
+def _parsed(annotation: str, node: ast.AST) -> ast.expr:
+    try:
+        return ast.parse(annotation, mode="eval").body
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        raise _strange(node) from None
 
 
 def _is_number(node: ast.AST) -> bool:
@@ -325,6 +336,10 @@ class _Function:
                 self._expression(arg)
             case ast.Constant():
                 _demand(_is_number(node), node)
+            case ast.Call(ast.Name("isinstance"), [value, ast.Name(kind)], []):
+                # A `Velocity` equals a tuple of its numbers, which is none.
+                _demand(kind in self.module.classes - {"Velocity"}, node)
+                self._expression(value)
             case ast.Call(ast.Name(name), args, keywords):
                 self._call(node, name, len(args), [keyword.arg for keyword in keywords])
                 self._expressions(*args, *(keyword.value for keyword in keywords))

@@ -62,6 +62,6 @@ def _windows(program: Program) -> dict[str, int]:
 
 def _ages(requirement: RequirementProgram) -> tuple[str, ...]:
     """Marks whose age is read, to report a deadline."""
-    if requirement.horizon is None:
+    if requirement.deadline_ticks is None:
         return ()
     return ("open", "last") if requirement.renewed else ("open",)

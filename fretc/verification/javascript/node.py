@@ -37,13 +37,13 @@ import { init, judge, REQUIREMENTS } from "./monitor.mjs";
 
 const AHEAD = 20_000; // steps in one answer, beside those that are asked for
 const RAILS = ["certain", "possible"];
-const TRUTHS = ["trigger", "breach", "owed", "settled", "answer"];
+const TRUTHS = ["trigger", "violation", "obligationPending", "satisfiedForever", "answer"];
 const code = (value) => [false, true, null].indexOf(value);
 
 /** All states that a plan reaches, found as they are asked for. */
 function search({ outcome, cells, windows, ages, rails, letters }) {
-  const { horizon } = REQUIREMENTS[outcome];
-  const now = Math.max(horizon ?? 0, ...windows.map(([, hi]) => hi)) + 2;
+  const { deadlineTicks } = REQUIREMENTS[outcome];
+  const now = Math.max(deadlineTicks ?? 0, ...windows.map(([, hi]) => hi)) + 2;
   const machine = init();
   const states = [], places = new Map(), told = [], readings = new Map();
   let done = 0;
@@ -56,8 +56,8 @@ function search({ outcome, cells, windows, ages, rails, letters }) {
         const { runs, first } = rail[name];
         return runs.slice(first).map(([a, b]) => [Math.min(tick - a, hi), tick - b]);
       }),
-      [marks.broken >= 0, marks.doomed >= 0],
-      ages.map((name) => (marks[name] < 0 ? -1 : Math.min(tick - marks[name], horizon + 1))),
+      [marks.broken >= 0, marks.violationInevitable >= 0],
+      ages.map((name) => (marks[name] < 0 ? -1 : Math.min(tick - marks[name], deadlineTicks + 1))),
     ];
   };
   const load = (rail, [values, runs, latched, old]) => {
@@ -65,8 +65,8 @@ function search({ outcome, cells, windows, ages, rails, letters }) {
     windows.forEach(([name], i) => {
       rail[name] = { runs: runs[i].map(([a, b]) => [now - a, now - b]), first: 0 };
     });
-    const [broken, doomed] = latched.map((is) => (is ? 0 : -1));
-    const marks = { broken, doomed, last: -1, open: -1 };
+    const [broken, violationInevitable] = latched.map((is) => (is ? 0 : -1));
+    const marks = { broken, violationInevitable, last: -1, open: -1 };
     ages.forEach((name, i) => (marks[name] = old[i] < 0 ? -1 : now - old[i]));
     rail.marks[outcome] = marks;
   };
@@ -86,18 +86,20 @@ function search({ outcome, cells, windows, ages, rails, letters }) {
   const reading = (said, marks, tick) => [
     said.deadline === null ? -1 : Math.max(-1, said.deadline - tick),
     code(said.firstViolation !== null),
-    marks.broken >= 0 ? 1 : code(said.fails),
+    marks.broken >= 0 ? 1 : code(said.violatedIfEnded),
     ...TRUTHS.map((name) => code(said[name])),
   ];
-  const outcomeOf = (tick, { certain, possible, verdict, finite, owed }) => {
+  const outcomeOf = (tick, { certain, possible, verdict, finite, obligationPending }) => {
     const of = { certain, possible };
     const parts = RAILS.map((name) => reading(of[name], machine[name].marks[outcome], tick));
     const facts = RAILS.map((name) => {
-      const { broken, doomed } = machine[name].marks[outcome];
-      return [broken >= 0, doomed >= 0, of[name].fails, of[name].trigger || of[name].owed];
+      const { broken, violationInevitable } = machine[name].marks[outcome];
+      const pending = of[name].trigger || of[name].obligationPending;
+      return [broken >= 0, violationInevitable >= 0, of[name].violatedIfEnded, pending];
     });
     const isReal = facts[0].every((fact, i) => !fact || facts[1][i]);
-    const key = JSON.stringify([...parts, String(verdict), code(finite), code(owed), isReal]);
+    const said = [String(verdict), code(finite), code(obligationPending)];
+    const key = JSON.stringify([...parts, ...said, isReal]);
     if (!readings.has(key)) {
       readings.set(key, readings.size);
       told.push(key);

@@ -215,7 +215,7 @@ def covered(loop: Loop, limit: int, longest: int) -> AbstractionResult:
         for tick, begun in loop.begins(node):
             if tick.violated:
                 continue
-            case = now, begun, tick.owed, tick.sent
+            case = now, begun, tick.obligation_pending, tick.sent
             if case in ended:  # The same steps belong to another valuation.
                 steps += ended[case]
                 continue
@@ -255,7 +255,7 @@ def _followed(
         age += channel.cells
         flying = any(queued == age for _, queued in after.wheels.queue)
         age = age if flying else ARRIVED
-    return _numbers(now.open + 1 if tick.owed else -1, age, after)
+    return _numbers(now.open + 1 if tick.obligation_pending else -1, age, after)
 
 
 def _numbers(open_: int, age: int, node: Node) -> TwinState:

@@ -51,7 +51,7 @@ class LoopTick(NamedTuple):
 
     letter: Valuation
     triggered: bool
-    owed: bool
+    obligation_pending: bool
     requested: bool
     sent: bool | None
     """None: no message; False: the message is lost."""
@@ -130,11 +130,17 @@ class Loop:
         return [certain] if still >= self.channel.stands else [(False, still), certain]
 
     def _begins(self, node: Node, letter: Valuation, still: int) -> Iterator[tuple[LoopTick, Node]]:
-        safety, observer, triggered, owed, violated = self._judge(node, letter)
-        requested = bool(triggered or owed)
+        safety, observer, triggered, obligation_pending, violated = self._judge(node, letter)
+        requested = bool(triggered or obligation_pending)
         same = self.channel.edge and requested == node.requested
         for sent, losses in self._fates(node, same):
-            facts = (bool(triggered), bool(owed), requested, sent, same and sent is not None)
+            facts = (
+                bool(triggered),
+                bool(obligation_pending),
+                requested,
+                sent,
+                same and sent is not None,
+            )
             tick = LoopTick(letter, *facts, bool(violated))
             wheels, silent = self._begun(node.wheels, tick, still), self._silence(node, sent)
             yield tick, Node(safety, observer, wheels, losses, requested, silent)
@@ -159,14 +165,14 @@ class Loop:
         if judgement is None:
             self._safety.load(node.safety)
             verdict, _ = self._safety.step(letter)
-            triggered, owed = self._safety.demands()
+            triggered, obligation_pending = self._safety.demands()
             watching: Hashable = None
             if self._observer is not None:
                 self._observer.load(node.observer)
                 verdict, _ = self._observer.step(letter)
                 watching = self._observer.save()
             saved = self._safety.save()
-            judgement = (saved, watching, triggered, owed, verdict == "violated")
+            judgement = (saved, watching, triggered, obligation_pending, verdict == "violated")
             self._judgements[key] = judgement
         return judgement
 

@@ -94,7 +94,7 @@ class _Replay:
         self._step(self._observer, tick)
         self.violated = self._observer.verdicts()[self._places[1]] == VIOLATED
         signals = self._safety.must.signals()[self._places[0]]
-        assert bool(signals.trigger or signals.owed) == tick.requested
+        assert bool(signals.trigger or signals.obligation_pending) == tick.requested
         self._send(tick)
         delivered = None
         for event in moment.events:

@@ -94,7 +94,7 @@ def check_front(
     row = _tuple(names)
     stepped = body_of(step, "step", f"self, *, {parameters}")
     require(reads(stepped, f"self.take(({row},))\nreturn {verdicts}"), step)
-    rows = "self, rows: Iterable[Sequence[Value] | Mapping[str, Value]]"
+    rows = "self, rows: 'Iterable[Sequence[Value] | Mapping[str, Value]]'"
     require(reads(body_of(run, "run", rows), f"self.take(rows)\nreturn {verdicts}"), run)
     body = body_of(truths, "truths", f"self, {parameters}")
     given, rest, last = body[: len(names)], body[len(names) : -1], body[-1]

@@ -74,7 +74,9 @@ class Stepped:
         self._alone = len(monitor.REQUIREMENTS) == 1
         self._step = _stepping(monitor, atoms)
         self._cells = RailState(rail, cells)
-        self._fates = [n for n in rail.__slots__ if n.endswith(("_broken", "_doomed"))]
+        self._fates = [
+            n for n in rail.__slots__ if n.endswith(("_broken", "_violation_inevitable"))
+        ]
 
     def save(self) -> Hashable:
         """All cells."""
@@ -92,12 +94,12 @@ class Stepped:
         rail = self._rail
         signals, marks = rail.signals()[self._place], rail.marks()[self._place]
         verdict = verdicts if self._alone else verdicts[self._place]
-        return str(verdict), marks.broken < 0 and not signals.fails
+        return str(verdict), marks.broken < 0 and not signals.violated_if_ended
 
     def demands(self) -> tuple[bool, bool]:
         """Whether an obligation began at the last tick, and whether one is open after it."""
         signals = self._rail.signals()[self._place]
-        return bool(signals.trigger), bool(signals.owed)
+        return bool(signals.trigger), bool(signals.obligation_pending)
 
 
 def _stepping(monitor: Any, atoms: Sequence[str]) -> Callable[[Valuation], Any]:

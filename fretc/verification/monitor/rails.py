@@ -79,7 +79,10 @@ def compared(
     return Equivalent(states)
 
 
-_STARTS = ({"broken": -1, "doomed": -1, "last": -1, "open": -1}, {"last": 1, "open": 2})
+_STARTS = (
+    {"broken": -1, "violation_inevitable": -1, "last": -1, "open": -1},
+    {"last": 1, "open": 2},
+)
 """Values of marks before a step: none, and earlier ticks."""
 _TICK = 5
 

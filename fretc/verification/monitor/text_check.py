@@ -88,7 +88,7 @@ def _check_module(module: ast.Module, *, by_variables: bool) -> None:
     require(monitor.name == f"{title}Monitor" and _is_plain(rail) and _is_plain(monitor), monitor)
     base = "VariableMonitor" if by_variables else "Monitor"
     require([ast.unparse(each) for each in (*rail.bases, *monitor.bases)] == [base], monitor)
-    require(is_one_of(binding, f"MONITOR: type[{base}] = {monitor.name}"), binding)
+    require(is_one_of(binding, f"MONITOR: 'type[{base}]' = {monitor.name}"), binding)
     _check_annotations(module, title)
     main = "main_by_variables" if by_variables else "main"
     require(is_one_of(run, f'if __name__ == "__main__":\n    sys.exit({main}(MONITOR))'), run)
@@ -105,8 +105,8 @@ def _check_module(module: ast.Module, *, by_variables: bool) -> None:
 
 
 def _check_annotations(module: ast.Module, title: str) -> None:
-    """Check annotations, which Python evaluates when it executes the text."""
-    allowed = {*_ANNOTATIONS, f"{title}Rail"}
+    """Check annotations: names, and texts, which Python 3.8 can only read so."""
+    allowed = {*_NAMES, *map(repr, _ANNOTATIONS), f"{title}Rail"}
     for node in ast.walk(module):
         match node:
             case ast.FunctionDef(returns=ast.expr() as annotation):
@@ -115,19 +115,22 @@ def _check_annotations(module: ast.Module, title: str) -> None:
                 require(ast.unparse(annotation) in allowed, annotation)
 
 
+_NAMES = (
+    *("None", "bool", "int", "Truth", "Verdict", "Number"),
+    *(f"ClassVar[{kept!r}]" for kept in ("tuple[str, ...]", "Mapping[str, str]")),
+    "ClassVar['Mapping[str, Variable]']",
+    "tuple[bool, ...]",  # Of an attribute in a function: Python does not evaluate it.
+)
 _ANNOTATIONS = frozenset(
     (
-        *("None", "bool", "int", "Truth", "Verdict", "tuple[Verdict, ...]", "type[Monitor]"),
-        "type[VariableMonitor]",
+        *("tuple[Verdict, ...]", "type[Monitor]", "type[VariableMonitor]"),
         *(
-            "tuple[bool, ...]",
             "tuple[Signals[bool], ...]",
             "tuple[Signals[int], ...]",
             "tuple[Marks, ...]",
         ),
-        *("ClassVar[tuple[str, ...]]", "ClassVar[Mapping[str, str]]"),
         *("Iterable[Sequence[Any]]", "Iterable[Row | Mapping[str, Truth]]"),
-        *("Number", "str | None", "tuple[Truth, ...]", "ClassVar[Mapping[str, Variable]]"),
+        *("str | None", "tuple[Truth, ...]"),
         "Iterable[Sequence[Value] | Mapping[str, Value]]",
     )
 )
@@ -239,7 +242,7 @@ def _monitor(
             (variables[1], step, run), declared, tuple(inputs.values()), len(names.prefixes)
         )
     else:
-        rows = "self, rows: Iterable[Row | Mapping[str, Truth]]"
+        rows = "self, rows: 'Iterable[Row | Mapping[str, Truth]]'"
         ran = f"self.advance(rows)\nreturn {_all_verdicts(names.prefixes)}"
         require(reads(body_of(run, "run", rows), ran), run)
     check_columns(columns, literal_names)
@@ -326,8 +329,8 @@ def _check_step(
 def _verdict(prefix: str, tick: RowBehaviour) -> str:
     """The end of a step with an inlined tick."""
     text = f"if {_violated('rail', prefix, tick)}:\n    return VIOLATED\n"
-    if prefix in tick.settled:
-        text += f"if rail.{prefix}_signals[{_SETTLED}]:\n    return SATISFIED\n"
+    if prefix in tick.satisfied_forever:
+        text += f"if rail.{prefix}_signals[{_SATISFIED_FOREVER}]:\n    return SATISFIED\n"
     return f"{text}return PENDING"
 
 
@@ -336,22 +339,26 @@ def _check_verdicts(node: ast.stmt, prefixes: Sequence[str], tick: RowBehaviour)
     values = []
     for prefix in prefixes:
         rest = "PENDING"
-        if prefix in tick.settled:
-            settled = f"must.{prefix}_signals[{_SETTLED}]"
+        if prefix in tick.satisfied_forever:
+            forever = f"must.{prefix}_signals[{_SATISFIED_FOREVER}]"
             possible = _violated("may", prefix, tick)
-            rest = f"SATISFIED if {settled} and not ({possible}) else PENDING"
+            rest = f"SATISFIED if {forever} and not ({possible}) else PENDING"
         values.append(f"VIOLATED if {_violated('must', prefix, tick)} else {rest}")
-    rails = "must = self.must\n" + "may = self.may\n" * bool(tick.settled)
+    rails = "must = self.must\n" + "may = self.may\n" * bool(tick.satisfied_forever)
     text = f"{rails}return ({', '.join(values)},)"
     require(reads(body_of(node, "verdicts", "self"), text), node)
 
 
-_SETTLED = SIGNALS.index("settled")
+_SATISFIED_FOREVER = SIGNALS.index("satisfied_forever")
 
 
 def _violated(rail: str, prefix: str, tick: RowBehaviour) -> str:
-    doomed = f" or {rail}.{prefix}_doomed >= 0" if prefix in tick.doomed else ""
-    return f"{rail}.{prefix}_broken >= 0{doomed}"
+    inevitable = (
+        f" or {rail}.{prefix}_violation_inevitable >= 0"
+        if prefix in tick.violation_inevitable
+        else ""
+    )
+    return f"{rail}.{prefix}_broken >= 0{inevitable}"
 
 
 def _is_text(node: ast.Assign, name: str) -> bool:

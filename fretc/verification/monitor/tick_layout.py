@@ -52,9 +52,9 @@ class RowBehaviour:
 
     inlined: str
     """The same as statements of a step with known values, with `rail` as the only rail."""
-    doomed: frozenset[str]
+    violation_inevitable: frozenset[str]
     """Prefixes of requirements whose violation can be inevitable."""
-    settled: frozenset[str]
+    satisfied_forever: frozenset[str]
     """Prefixes of requirements that can be satisfied for ever."""
 
 
@@ -69,7 +69,7 @@ def check_advance(node: ast.stmt, rail: RailNames, inputs: Mapping[str, str]) ->
     Raises:
         UnexpectedCodeError: it does something else.
     """
-    body = body_of(node, "advance", "self, rows: Iterable[Sequence[Any]]")
+    body = body_of(node, "advance", "self, rows: 'Iterable[Sequence[Any]]'")
     place = next((i for i, part in enumerate(body) if isinstance(part, ast.For)), None)
     require(place is not None, node)
     assert place is not None
@@ -85,8 +85,12 @@ def check_advance(node: ast.stmt, rail: RailNames, inputs: Mapping[str, str]) ->
     signals = _check_end(body[place + 1 :], rail, carried, bound)
     return RowBehaviour(
         inlined(body),
-        frozenset(prefix for prefix in rail.prefixes if f"{prefix}_doomed" in carried),
-        frozenset(prefix for prefix in rail.prefixes if signals[prefix]["settled"] != "False"),
+        frozenset(
+            prefix for prefix in rail.prefixes if f"{prefix}_violation_inevitable" in carried
+        ),
+        frozenset(
+            prefix for prefix in rail.prefixes if signals[prefix]["satisfied_forever"] != "False"
+        ),
     )
 
 
@@ -181,8 +185,8 @@ def _check_end(
             for value in values.values():
                 _check_value(value, bound - rail.windows, frozenset())
             signals[prefix] = {name: ast.unparse(value) for name, value in values.items()}
-            owed = signals[prefix]["owed"]
-            opened[normal(f"{prefix}_open = {prefix}_last if {owed} else -1")] = prefix
+            still_open = signals[prefix]["obligation_pending"]
+            opened[normal(f"{prefix}_open = {prefix}_last if {still_open} else -1")] = prefix
     require(not pending and signals.keys() == {*rail.prefixes}, first)
     return signals
 
@@ -263,7 +267,7 @@ if {_is_odd(name)}:
         """Check that it only stores the tick of an event in a mark."""
         stored = {n.id for n in ast.walk(statement) if isinstance(n, ast.Name)}
         for mark in self.carried.intersection(self.rail.marks, stored):
-            noted, kind = f"{mark} = tick", mark.rpartition("_")[2]
+            noted, (kind,) = f"{mark} = tick", (k for k in MARKS if mark.endswith(f"_{k}"))
             match statement:
                 case ast.Assign() if kind == "last" and is_one_of(statement, noted):
                     return True
@@ -271,7 +275,7 @@ if {_is_odd(name)}:
                     self._check(test, bound)
                     return True
                 case ast.If(ast.BoolOp(ast.And(), [once, *tests]), [body], []) if (
-                    kind in ("broken", "doomed")
+                    kind in ("broken", "violation_inevitable")
                     and is_one_of(once, f"{mark} < 0")
                     and is_one_of(body, noted)
                 ):

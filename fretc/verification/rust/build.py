@@ -81,7 +81,7 @@ def _library(cells: int, inputs: Sequence[str], outcomes: Sequence[str]) -> str:
     _, *truths = RailReading._fields
     bits = ", ".join(f"reading.{name}.into()" for name in truths)
     return f"""use std::mem::size_of;
-use {_CRATE}::{{fretc_layout::PLACES, Inputs, Monitor, Outcome, RailReading}};
+use {_CRATE}::{{fretc_layout::PLACES, Inputs, Monitor, Outcome, Reading}};
 
 const TRUTHS: [Option<bool>; 3] = [Some(false), Some(true), None];
 
@@ -97,7 +97,7 @@ pub struct Told {{
     possible: Rail,
     verdict: u32,
     finite: u8,
-    owed: u8,
+    obligation_pending: u8,
 }}
 
 fn rail(reading: Reading) -> Rail {{
@@ -111,7 +111,7 @@ fn of(outcome: Outcome) -> Told {{
         possible: rail(outcome.possible),
         verdict: outcome.verdict as u32,
         finite: outcome.finite.map_or(2, u8::from),
-        owed: outcome.owed.map_or(2, u8::from),
+        obligation_pending: outcome.obligation_pending.map_or(2, u8::from),
     }}
 }}
 

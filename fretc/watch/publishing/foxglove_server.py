@@ -15,8 +15,8 @@ from fretc.watch.sources.source import Arrival, Channel
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.extras import install_help
 from fretish.diagnostics.messages import diagnostic
-from monitors.guard import State, Status
 from monitors.kernel.verdicts import Truth
+from monitors.stop_supervisor import State, Status
 
 if TYPE_CHECKING:
     import foxglove
@@ -25,9 +25,15 @@ HOST, PORT = "127.0.0.1", 8765
 """The default address: this machine, the usual port."""
 NAME = "fretc.RequirementState"
 LEVELS = ("OK", "WARN", "ERROR", "STALE")
-_OWED: dict[Truth, str] = {True: "yes", None: "perhaps", False: "no"}
+_ANSWERS: dict[Truth, str] = {True: "yes", None: "perhaps", False: "no"}
 _TEXT, _WHOLE = {"type": "string"}, {"type": "integer"}
-_ALWAYS = {"requirement": _TEXT, "level": _TEXT, "message": _TEXT, "verdict": _TEXT, "owed": _TEXT}
+_ALWAYS = {
+    "requirement": _TEXT,
+    "level": _TEXT,
+    "message": _TEXT,
+    "verdict": _TEXT,
+    "obligation_pending": _TEXT,
+}
 _TIMES = ("triggered_ns", "open_ns", "deadline_ns", "violated_ns")
 SCHEMA = {
     "title": NAME,
@@ -35,7 +41,7 @@ SCHEMA = {
     "properties": {
         **_ALWAYS,
         "level": {**_TEXT, "enum": [*LEVELS]},
-        "owed": {**_TEXT, "enum": [*_OWED.values()]},
+        "obligation_pending": {**_TEXT, "enum": [*_ANSWERS.values()]},
         **dict.fromkeys(_TIMES, _WHOLE),
     },
     "required": [*_ALWAYS],
@@ -116,7 +122,7 @@ def message(state: State, status: Status) -> dict[str, object]:
         "level": LEVELS[status.level],
         "message": status.message,
         "verdict": state.verdict,
-        "owed": _OWED[state.owed],
+        "obligation_pending": _ANSWERS[state.obligation_pending],
         **{name: time for name, time in times.items() if time is not None},
     }
 

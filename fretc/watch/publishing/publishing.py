@@ -12,7 +12,7 @@ from typing import Protocol
 from fretc.watch.publishing.statuses import statuses
 from fretc.watch.sources.source import Arrival, Diagnosing, Event, Idle
 from fretc.watch.watch import Watch
-from monitors.guard import State, Status
+from monitors.stop_supervisor import State, Status
 
 PERIOD = 0.5
 """Seconds between two publications of all states if nothing changes."""

@@ -1,11 +1,11 @@
-"""The statuses to publish for a session, with the levels of emitted nodes (`monitors/guard.py`)."""
+"""The statuses of a session, with the levels of emitted nodes (`monitors/stop_supervisor.py`)."""
 
 from __future__ import annotations
 
 from collections.abc import Collection
 
 from fretc.watch.session import Session
-from monitors.guard import OK, STALE, State, Status, status, status_of
+from monitors.stop_supervisor import OK, STALE, State, Status, status, status_of
 
 SOURCES = "sources"
 """The name of the status of the source."""

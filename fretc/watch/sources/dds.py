@@ -20,7 +20,7 @@ from fretc.watch.sources.middleware import Middleware, several_publishers
 from fretc.watch.sources.source import Channel, Problem, Reconnected
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.messages import diagnostic
-from monitors.guard import Status
+from monitors.stop_supervisor import Status
 
 MOST_KINDS = 20
 """The most kinds of publishers of a topic; further kinds are not read."""

@@ -19,7 +19,7 @@ from fretc.watch.sources.middleware import Middleware, several_publishers
 from fretc.watch.sources.source import Channel
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
-from monitors.guard import Status
+from monitors.stop_supervisor import Status
 
 PYTHON = "/usr/bin/python3"
 """The Python of Debian and Ubuntu, for which ROS is packaged."""

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
 from fretish.diagnostics.diagnostic import Diagnostic
-from monitors.guard import Status
+from monitors.stop_supervisor import Status
 
 
 @dataclass(frozen=True, slots=True)

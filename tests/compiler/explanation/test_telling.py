@@ -28,8 +28,11 @@ def test_triggers_answers_violations_and_open_demands_are_those_of_the_definitio
         if expected.open is not None:
             assert found.open == expected.open, (template, columns)
             steps(machine, columns)
-            owed = bool(expected.open) or LENGTH - 1 in expected.triggers
-            assert machine.standings()[0].owed is owed, (template, columns)
+            obligation_pending = bool(expected.open) or LENGTH - 1 in expected.triggers
+            assert machine.standings()[0].obligation_pending is obligation_pending, (
+                template,
+                columns,
+            )
 
 
 def test_a_response_after_the_interval_is_no_answer() -> None:

@@ -188,12 +188,12 @@ def test_future_past_and_watch_mean_what_fretish_means(scope: str) -> None:
         signals = monitor_spec(meant)
         forward = at_start(printing.future(future(meant)))
         back = at_end(printing.past(past(meant)))
-        breach = fret.parse(printing.past(signals.breach))
-        fails = fret.parse(printing.past(signals.fails))
+        violation = fret.parse(printing.past(signals.violation))
+        violated_if_ended = fret.parse(printing.past(signals.violated_if_ended))
         for (traces, packed), expected in judgements(template, drawn_each=25):
             word, length, full = packed
-            lost = fret.values(fails, word, length, full)[-1]
-            for broken in fret.values(breach, word, length, full):
+            lost = fret.values(violated_if_ended, word, length, full)[-1]
+            for broken in fret.values(violation, word, length, full):
                 lost |= broken
             for name, judged in (
                 ("future", forward(packed)),
@@ -213,8 +213,8 @@ def test_the_formulas_hold_as_their_definition_says(scope: str) -> None:
             for columns in drawn(template.columns, length, 2, repr(template)):
                 trace = [{n: column[i] for n, column in columns.items()} for i in range(length)]
                 expected = template.satisfied(columns)
-                kept = not holds(signals.fails, trace, length - 1) and not any(
-                    holds(signals.breach, trace, i) for i in range(length)
+                kept = not holds(signals.violated_if_ended, trace, length - 1) and not any(
+                    holds(signals.violation, trace, i) for i in range(length)
                 )
                 found = (holds(forward, trace, 0), holds(back, trace, length - 1), kept)
                 assert found == (expected,) * 3, (template, columns)
@@ -272,9 +272,11 @@ def test_a_variable_may_be_any_expression(scope: str, turn: int) -> None:
             packed = word, _, full = fret.packed(traces)
             for name, judge in judges.items():
                 assert fret.differing(traces, expected, judge(packed)) is None, (text, name)
-            lost = fret.values(fret.parse(printing.past(signals.fails)), word, length, full)[-1]
-            breach = fret.parse(printing.past(signals.breach))
-            for broken in fret.values(breach, word, length, full):
+            lost = fret.values(
+                fret.parse(printing.past(signals.violated_if_ended)), word, length, full
+            )[-1]
+            violation = fret.parse(printing.past(signals.violation))
+            for broken in fret.values(violation, word, length, full):
                 lost |= broken
             assert fret.differing(traces, expected, full ^ lost) is None, (text, "watch")
 
@@ -284,11 +286,11 @@ def test_a_variable_may_be_any_expression(scope: str, turn: int) -> None:
 def test_a_breach_cannot_be_repaired(scope: str) -> None:
     """The verdict `violated` is certain: every longer trace is violated too."""
     for template in every(scope):
-        breach = fret.parse(printing.past(monitor_spec(read(template.sentence)).breach))
+        violation = fret.parse(printing.past(monitor_spec(read(template.sentence)).violation))
         for (traces, packed), kept in judgements(template, drawn_each=10):
             word, length, full = packed
             lost = 0
-            for broken in fret.values(breach, word, length, full):
+            for broken in fret.values(violation, word, length, full):
                 lost |= broken
             assert fret.differing(traces, lost & kept, 0) is None, template
 

@@ -404,9 +404,9 @@ def test_no_monitor_asks_whether_it_is_the_first_tick(case: tuple[str, str]) -> 
         columns = {name: [*column] for name, column in word.items()}
         pairs = zip(monitoring.steps(itself, columns), monitoring.steps(told, columns), strict=True)
         for one, other in pairs:
-            assert (one.trigger, one.breach, one.finite, one.first_violation) == (
+            assert (one.trigger, one.violation, one.finite, one.first_violation) == (
                 other.trigger,
-                other.breach,
+                other.violation,
                 other.finite,
                 other.first_violation,
             ), (sentence, text, trace)

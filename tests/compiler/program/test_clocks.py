@@ -26,7 +26,7 @@ def test_a_clock_is_as_old_as_the_open_demand() -> None:
         if known:
             found += 1
             made = lengthened(plain, known)
-            most = made.requirements[0].horizon
+            most = made.requirements[0].deadline_ticks
             assert most is not None
             state, doubt = initial(made), choose.choice([False, True])
             for _ in range(30):

@@ -183,7 +183,7 @@ def test_the_interceptor_does_in_each_state_what_the_core_does(options: core.Opt
     ]
 
     def alike(state: core.State) -> object:
-        values = {name: getattr(state, name) for name in state.__slots__}
+        values = {name: getattr(state, name) for name in vars(state)}
         return read.Interceptor(*{**values, "command": read.Velocity(*state.command)}.values())
 
     assert read.Initial() == alike(core.initial(options))

@@ -106,7 +106,7 @@ every_name = each("chunk", chunks())
 
 def breaks(told: Sequence[Sequence[c_monitors.Outcome]]) -> list[int]:
     """The ticks of breaches, for certain or maybe."""
-    return [i for i, (one,) in enumerate(told) if one.certain.breach or one.possible.breach]
+    return [i for i, (one,) in enumerate(told) if one.certain.violation or one.possible.violation]
 
 
 # Each language's own tool ---------------------------------------------------------------------
@@ -171,7 +171,9 @@ def test_rustc_compiles_it(tmp_path: Path) -> None:
 def test_node_runs_it(tmp_path: Path) -> None:
     texts = [TARGETS["js"].emit([about(names)])[0].text for names in chunks()]
     for rows in node.outcomes(tmp_path, texts, words()):
-        assert [row[0]["certain"]["breach"] for row in rows] == [False] * (len(rows) - 1) + [True]
+        assert [row[0]["certain"]["violation"] for row in rows] == [False] * (len(rows) - 1) + [
+            True
+        ]
 
 
 @every_name

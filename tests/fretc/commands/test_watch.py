@@ -90,9 +90,11 @@ def test_each_line_for_a_program_fits_the_schema(fretc: Fretc, *, stops: bool) -
     assert run.status == (0 if stops else 1)
     assert found[0] == {"type": "opened", "source": "run.mcap"}
     assert found[-1]["verdicts"] == {"R1": "satisfied" if stops else "violated"}
-    owed = [line["owed"] for line in found if line["type"] == "requirement"]
-    assert True in owed
-    assert owed[-1] is (not stops)
+    obligation_pending = [
+        line["obligation_pending"] for line in found if line["type"] == "requirement"
+    ]
+    assert True in obligation_pending
+    assert obligation_pending[-1] is (not stops)
     violated = [line["violated_ns"] for line in found if line["type"] == "requirement"]
     assert violated[-1] == (None if stops else 1000 * S + 1200 * MS + 10 * MS)
 

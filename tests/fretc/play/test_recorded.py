@@ -71,7 +71,9 @@ def test_each_tick_of_a_window_is_judged_as_in_the_whole_run() -> None:
             assert alone[1:] == whole[first + 1 : first + len(rows)], template
             begins = "an obligation from before this window starts at its first tick" in start.about
             assert (alone[0] == whole[first]) is not begins, template
-            assert any(each.breach or each.doom for tick in alone for each in tick), template
+            assert any(
+                each.violation or each.violation_inevitable for tick in alone for each in tick
+            ), template
             seen += 1
         assert len([*made.starts()]) + len([*made.notes()]) >= min(SHOWN, made.violations)
     assert seen > (100 if FULL else 50)

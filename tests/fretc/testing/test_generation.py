@@ -92,7 +92,7 @@ def manner(
     if not comes_by(word, situation, last):
         return None
     if accepted:
-        return evaluate(requirement.watch.owed, word.columns, word.ticks) >> last & 1
+        return evaluate(requirement.watch.obligation_pending, word.columns, word.ticks) >> last & 1
     if broken is None:
         return 2
     return 0 if broken == last and comes_by(word, situation, broken) else 1
@@ -263,7 +263,7 @@ def test_the_other_requirements_are_kept() -> None:
     found = made(*sentences)
     for test in found.tests:
         word = word_of(test)
-        assert all(not judged(other, word).breach for other in requirements(*sentences)[1:])
+        assert all(not judged(other, word).violation for other in requirements(*sentences)[1:])
 
 
 @pytest.mark.slow

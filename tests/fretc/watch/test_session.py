@@ -157,7 +157,7 @@ def test_nothing_is_judged_while_the_source_is_gone(some: list[Sent], data: st.D
                 ticks = session.ticks
             if first <= i < last:
                 assert session.ticks == ticks
-                assert {state.owed for state in session.states()} == {None}
+                assert {state.obligation_pending for state in session.states()} == {None}
                 session.idle(arrival.log_time)
             if i == last:
                 session.miss(since, max(since, arrival.log_time - 1))
@@ -187,13 +187,15 @@ def test_what_is_owed_does_not_wait_for_the_tick() -> None:
     for each in (far, *still):
         assert session.arrive(each.arrival) is None
     assert session.ticks == 1
-    assert {state.requirement: state.owed for state in session.states()}["R0"] is False
+    assert {state.requirement: state.obligation_pending for state in session.states()}[
+        "R0"
+    ] is False
     session.arrive(near.arrival)
     assert session.ticks == 2
     states = {state.requirement: state for state in session.states()}
-    assert states["R0"].owed is True
+    assert states["R0"].obligation_pending is True
     assert states["R0"].verdict == "vacuous"
-    judged = {state.requirement: state.owed for state in session.states(ahead=False)}
+    judged = {state.requirement: state.obligation_pending for state in session.states(ahead=False)}
     assert judged["R0"] is False
 
 

@@ -81,15 +81,15 @@ def test_what_is_owed_is_news_before_the_tick_and_soon(last: str) -> None:
     first = [*watch.take(near)]
     received = near.log_time + LOOK
     more: Item = Sent("/x", 1.0, 291 + LOOK // MS).arrival if last == "message" else Idle(received)
-    owed = [
-        each.state.owed
+    obligation_pending = [
+        each.state.obligation_pending
         for each in [*first, *watch.take(more)]
         if isinstance(each, StateChange) and each.state.requirement == "R0"
     ]
-    assert owed[-1] is True
+    assert obligation_pending[-1] is True
     assert ticks > 5
     judged = watch.session.states(ahead=False)
-    assert {each.requirement: each.owed for each in judged}["R0"] is False
+    assert {each.requirement: each.obligation_pending for each in judged}["R0"] is False
 
 
 def test_a_clock_that_is_set_back_begins_a_run_with_a_recording_of_its_own(

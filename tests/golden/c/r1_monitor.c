@@ -30,9 +30,9 @@ static inline void r1_advance(r1_rail *rail, const r1_literals *now, r1_outcomes
     reading->violated = false;
     reading->failed = rail->since_1;
     reading->trigger = now->is_too_close;
-    reading->breach = false;
+    reading->violation = false;
     reading->open = rail->since_1;
-    reading->settled = false;
+    reading->satisfied_forever = false;
     reading->answer = now->is_stopped;
 }
 
@@ -43,14 +43,14 @@ static void r1_judge(fretc_outcome *outcome)
 
     if (outcome->certain.violated) {
         outcome->verdict = FRETC_VIOLATED;
-    } else if (outcome->certain.settled && !outcome->possible.violated) {
+    } else if (outcome->certain.satisfied_forever && !outcome->possible.violated) {
         outcome->verdict = FRETC_SATISFIED;
     } else {
         outcome->verdict = FRETC_PENDING;
     }
     /* FRETC_FALSE is 0, FRETC_TRUE 1 and FRETC_UNKNOWN 2: a jump would be guessed wrong each time that it changes. */
     outcome->finite = (fretc_truth)((outcome->certain.failed ? 0u : 1u) << (outcome->possible.failed ? 1u : 0u));
-    outcome->owed = (fretc_truth)((possible ? 2u : 0u) >> (certain ? 1u : 0u));
+    outcome->obligation_pending = (fretc_truth)((possible ? 2u : 0u) >> (certain ? 1u : 0u));
 }
 
 void r1_step(r1_state *state, const r1_inputs *inputs, r1_outcomes *outcomes)

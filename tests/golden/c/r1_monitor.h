@@ -38,9 +38,9 @@ typedef struct {
     bool violated; /* it was violated at or before this tick */
     bool failed;   /* it is violated if the run ends here */
     bool trigger;  /* a demand begins at this tick */
-    bool breach;   /* a demand is broken at this tick */
+    bool violation; /* a demand is broken at this tick */
     bool open;     /* a demand is open after it */
-    bool settled;  /* no later tick can break a demand */
+    bool satisfied_forever; /* no later tick can break a demand */
     bool answer;   /* the response that meets a demand came */
 } fretc_reading;
 
@@ -49,7 +49,7 @@ typedef struct {
     fretc_reading possible;
     fretc_verdict verdict;
     fretc_truth finite; /* FRET's verdict on the finite run up to here */
-    fretc_truth owed;   /* a demand begins at this tick or is open after it: stop, unless it is FRETC_FALSE */
+    fretc_truth obligation_pending; /* a demand begins at this tick or is open after it: stop, unless it is FRETC_FALSE */
 } fretc_outcome;
 
 #endif

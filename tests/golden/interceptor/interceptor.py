@@ -68,7 +68,9 @@ class Gate:
     """
 
     def __init__(
-        self, publish: Callable[[Velocity], None], speakers: Callable[[], int] = lambda: 1
+        self,
+        publish: "Callable[[Velocity], None]",
+        speakers: "Callable[[], int]" = lambda: 1,
     ) -> None:
         """`speakers` gives how many publishers the topic of stops has at this moment."""
         self.state = initial(OPTIONS)
@@ -77,7 +79,7 @@ class Gate:
         self._alone, self._closed = True, False
         self._lock = Lock()
 
-    def take(self, event: StopHeard | CommandHeard | ScanHeard | TimerRang) -> None:
+    def take(self, event: "StopHeard | CommandHeard | ScanHeard | TimerRang") -> None:
         """One step; of several safety functions none is trusted: each moment requests a stop."""
         with self._lock:
             alone = self._speakers() <= 1
@@ -89,7 +91,7 @@ class Gate:
                 self._alone = alone
                 tell(CROWD if not alone else f"{STOP} has one publisher again, which decides")
 
-    def _step(self, event: StopHeard | CommandHeard | ScanHeard | TimerRang) -> None:
+    def _step(self, event: "StopHeard | CommandHeard | ScanHeard | TimerRang") -> None:
         self.state, output = step(self.state, event, OPTIONS)
         if output is not None:
             self._publish(output)
@@ -149,7 +151,7 @@ class Node:
         """The reason why ROS has ended the node."""
         self.end: Callable[[], None] = lambda: None
 
-    def run(self, arguments: list[str]) -> None:
+    def run(self, arguments: "list[str]") -> None:
         """Subscribe and publish until ROS is shut down."""
         import rclpy
         from geometry_msgs.msg import Twist
@@ -181,7 +183,7 @@ class Node:
 class Worker(Thread):
     """The node, on a thread of its own."""
 
-    def __init__(self, node: Node, arguments: list[str]) -> None:
+    def __init__(self, node: Node, arguments: "list[str]") -> None:
         super().__init__(daemon=True)
         self._node, self._arguments = node, arguments
         self.error: Exception | None = None
@@ -194,7 +196,7 @@ class Worker(Thread):
             self.error = error
 
 
-def main(arguments: list[str]) -> int:
+def main(arguments: "list[str]") -> int:
     """Run the node; gives the exit status.
 
     A signal is only noted, and this thread shares no lock: whatever it interrupts, nothing waits.

@@ -22,16 +22,19 @@ import itertools
 import json
 import os
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+import typing
+import warnings
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Sized
 from dataclasses import dataclass
 from enum import Enum
-from functools import cache, cached_property, total_ordering
+from functools import cached_property, lru_cache, total_ordering
 from operator import itemgetter
 from typing import (
     Any,
     ClassVar,
     Generic,
     NamedTuple,
+    Optional,
     Protocol,
     TextIO,
     TypeVar,
@@ -50,14 +53,14 @@ class R1Rail:
     __slots__ = (
         "doubt",
         "r1_broken",
-        "r1_doomed",
         "r1_last",
         "r1_open",
         "r1_signals",
+        "r1_violation_inevitable",
         "since_1",
         "tick",
     )
-    CELLS: ClassVar[tuple[str, ...]] = (
+    CELLS: ClassVar["tuple[str, ...]"] = (
         "since_1",
     )
 
@@ -68,12 +71,12 @@ class R1Rail:
         self.since_1 = False
         # ticks of R1: the first violation, the last trigger, the trigger of the open demand
         self.r1_broken = -1
-        self.r1_doomed = -1
+        self.r1_violation_inevitable = -1
         self.r1_last = -1
         self.r1_open = -1
         self.r1_signals: tuple[bool, ...] = (False,) * 7
 
-    def advance(self, rows: Iterable[Sequence[Any]]) -> bool:
+    def advance(self, rows: "Iterable[Sequence[Any]]") -> bool:
         """Step every row; returns whether all values were known."""
         known = True
         doubt = self.doubt
@@ -114,23 +117,23 @@ class R1Rail:
         self.r1_open = r1_open
         return known
 
-    def signals(self) -> tuple[Signals[bool], ...]:
+    def signals(self) -> "tuple[Signals[bool], ...]":
         """The signals of the last tick, for each requirement."""
         return (
             Signals(*self.r1_signals),
         )
 
-    def marks(self) -> tuple[Marks, ...]:
+    def marks(self) -> "tuple[Marks, ...]":
         """The remembered ticks, for each requirement."""
         return (
-            Marks(self.r1_broken, self.r1_doomed, self.r1_last, self.r1_open),
+            Marks(self.r1_broken, self.r1_violation_inevitable, self.r1_last, self.r1_open),
         )
 
 
 class R1Monitor(Monitor):
     """Step it with the propositions of each tick; a verdict comes back."""
 
-    PROGRAM = "e438fb62aee9c4c602ec9f8e96e7a1b8808d1818b36e92b1859921f626778315"
+    PROGRAM = "8ed98b58e347cab79c0d2da4d4f14b930bba172930f536eeac67f56cc9fd9551"
     REQUIREMENTS = (
         Requirement(
             "R1",
@@ -139,7 +142,7 @@ class R1Monitor(Monitor):
             None,
         ),
     )
-    PROPOSITIONS: ClassVar[Mapping[str, str]] = {
+    PROPOSITIONS: ClassVar["Mapping[str, str]"] = {
         "too_close": "too_close",
         "stopped": "stopped",
     }
@@ -180,12 +183,12 @@ class R1Monitor(Monitor):
             return VIOLATED
         return PENDING
 
-    def run(self, rows: Iterable[Row | Mapping[str, Truth]]) -> Verdict:
+    def run(self, rows: "Iterable[Row | Mapping[str, Truth]]") -> Verdict:
         """Many ticks at once: rows in the order of `PROPOSITIONS`, or by their names."""
         self.advance(rows)
         return self.verdicts()[0]
 
-    def verdicts(self) -> tuple[Verdict, ...]:
+    def verdicts(self) -> "tuple[Verdict, ...]":
         """For each requirement: satisfied or violated for every continuation; else pending."""
         must = self.must
         return (
@@ -195,24 +198,24 @@ class R1Monitor(Monitor):
         )
 
     @staticmethod
-    def columns(every: int, *, too_close: int, not_stopped: int, stopped: int) -> tuple[Signals[int], ...]:
+    def columns(every: int, *, too_close: int, not_stopped: int, stopped: int) -> "tuple[Signals[int], ...]":
         """The signals of whole traces: bit i is tick i; `every` has all bits of the trace."""
         # !stopped S (too_close & !stopped)
         since_1 = since(not_stopped, too_close & not_stopped)
         return (
             Signals(
                 trigger=too_close,
-                breach=0,
-                doom=0,
-                owed=since_1,
-                fails=since_1,
-                settled=0,
+                violation=0,
+                violation_inevitable=0,
+                obligation_pending=since_1,
+                violated_if_ended=since_1,
+                satisfied_forever=0,
                 answer=stopped,
             ),
         )
 
 
-MONITOR: type[Monitor] = R1Monitor
+MONITOR: "type[Monitor]" = R1Monitor
 
 if __name__ == "__main__":
     sys.exit(main(MONITOR))

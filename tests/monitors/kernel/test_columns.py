@@ -217,5 +217,5 @@ def test_nothing_else_is_a_truth_value(value: object) -> None:
 
 @pytest.mark.parametrize("row", [(), (True, True, True)])
 def test_a_row_has_one_value_for_each_column(row: tuple[bool, ...]) -> None:
-    with pytest.raises(ValueError, match="zip"):
+    with pytest.raises(ValueError, match="there are more or fewer values than expected"):
         c.columns_of(c.pieces_of([row]), 2)

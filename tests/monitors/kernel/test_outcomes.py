@@ -185,27 +185,30 @@ class Given(Monitor):
 
 
 def outcome_of(
-    signals: Mapping[str, Column], ticks: int, horizon: int | None, end: Verdict = INCONCLUSIVE
+    signals: Mapping[str, Column],
+    ticks: int,
+    deadline_ticks: int | None,
+    end: Verdict = INCONCLUSIVE,
 ) -> Outcome:
     class WithHorizon(Given):
-        REQUIREMENTS = (Requirement("R1", "", "", horizon),)
+        REQUIREMENTS = (Requirement("R1", "", "", deadline_ticks),)
 
     (outcome,) = evaluate(WithHorizon(), signals, ticks, end)
     return outcome
 
 
 def naive(
-    must: Signals[list[bool]], may: Signals[list[bool]], horizon: int | None, end: Verdict
+    must: Signals[list[bool]], may: Signals[list[bool]], deadline_ticks: int | None, end: Verdict
 ) -> Outcome:
     """The outcome tick by tick, from what its fields mean."""
     ticks = len(must.trigger)
-    violated = [a or b for a, b in zip(must.breach, must.doom, strict=True)]
-    perhaps = [a or b for a, b in zip(may.breach, may.doom, strict=True)]
+    violated = [a or b for a, b in zip(must.violation, must.violation_inevitable, strict=True)]
+    perhaps = [a or b for a, b in zip(may.violation, may.violation_inevitable, strict=True)]
     verdict = naive_verdict(must, may, violated, perhaps)
     finite = None
-    if ticks and (any(must.breach) or must.fails[-1]):
+    if ticks and (any(must.violation) or must.violated_if_ended[-1]):
         finite = False
-    elif ticks and not any(may.breach) and not may.fails[-1]:
+    elif ticks and not any(may.violation) and not may.violated_if_ended[-1]:
         finite = True
     unknown = [a != b for a, b in zip(violated, perhaps, strict=True)]
     if end == VIOLATED and verdict == "inconclusive":
@@ -214,16 +217,20 @@ def naive(
     answers, still_open, uncertain = [], [], []
     for trigger in triggers:
         at = trigger
-        while at < ticks and may.owed[at] and not must.answer[at]:
+        while at < ticks and may.obligation_pending[at] and not must.answer[at]:
             at += 1
-        late = horizon is not None and (ticks if at == ticks else at) - trigger > horizon
+        late = (
+            deadline_ticks is not None and (ticks if at == ticks else at) - trigger > deadline_ticks
+        )
         if at == ticks and not late:
-            still_open.append((trigger, None if horizon is None else trigger + horizon))
+            still_open.append(
+                (trigger, None if deadline_ticks is None else trigger + deadline_ticks)
+            )
         elif at < ticks and must.answer[at] and not late:
             answers.append((trigger, at))
         else:
             continue
-        if any(not must.owed[k] or may.answer[k] for k in range(trigger, at)):
+        if any(not must.obligation_pending[k] or may.answer[k] for k in range(trigger, at)):
             uncertain.append(trigger)
     return Outcome(
         "R1",
@@ -250,7 +257,7 @@ def naive_verdict(
         return NO_DATA
     for sure, possible, verdict in (
         (any(violated), any(perhaps), VIOLATED),
-        (must.owed[-1], may.owed[-1], INCONCLUSIVE),
+        (must.obligation_pending[-1], may.obligation_pending[-1], INCONCLUSIVE),
         (any(must.trigger), any(may.trigger), SATISFIED),
     ):
         if possible:
@@ -269,13 +276,16 @@ def runs(values: Sequence[bool]) -> tuple[tuple[int, int], ...]:
 
 
 def hold_to_the_definition(
-    codes: Mapping[str, bytes], ticks: int, horizon: int | None, end: Verdict
+    codes: Mapping[str, bytes], ticks: int, deadline_ticks: int | None, end: Verdict
 ) -> Outcome:
     """Whether the outcome of these signals is the naive one; 0 false, 1 true, 2 unknown."""
     must = Signals(**{name: [code == 1 for code in values] for name, values in codes.items()})
     may = Signals(**{name: [code != 0 for code in values] for name, values in codes.items()})
     columns = {name: column(values) for name, values in codes.items()}
-    found, expected = outcome_of(columns, ticks, horizon, end), naive(must, may, horizon, end)
+    found, expected = (
+        outcome_of(columns, ticks, deadline_ticks, end),
+        naive(must, may, deadline_ticks, end),
+    )
     assert found == expected
     assert found.as_json() == expected.as_json()
     for field in fields(Outcome):
@@ -306,16 +316,16 @@ def signal_codes(draw: st.DrawFn) -> dict[str, bytes]:
 
 @given(signal_codes(), horizons, ends)
 def test_the_outcome_is_what_its_fields_mean(
-    codes: dict[str, bytes], horizon: int | None, end: Verdict
+    codes: dict[str, bytes], deadline_ticks: int | None, end: Verdict
 ) -> None:
-    hold_to_the_definition(codes, len(codes["trigger"]), horizon, end)
+    hold_to_the_definition(codes, len(codes["trigger"]), deadline_ticks, end)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("horizon", [None, 0, 5, 300])
-def test_the_outcome_of_a_long_trace_is_what_its_fields_mean(horizon: int | None) -> None:
+@pytest.mark.parametrize("deadline_ticks", [None, 0, 5, 300])
+def test_the_outcome_of_a_long_trace_is_what_its_fields_mean(deadline_ticks: int | None) -> None:
     choose, ticks = random.Random(7), 20_000
-    chances = {"owed": 0.97, "answer": 0.05, "trigger": 0.2}
+    chances = {"obligation_pending": 0.97, "answer": 0.05, "trigger": 0.2}
     codes = {
         name: bytes(
             2 if choose.random() < 0.001 else choose.random() < chances.get(name, 0.01)
@@ -323,17 +333,17 @@ def test_the_outcome_of_a_long_trace_is_what_its_fields_mean(horizon: int | None
         )
         for name in Signals._fields
     }
-    outcome = hold_to_the_definition(codes, ticks, horizon, INCONCLUSIVE)
+    outcome = hold_to_the_definition(codes, ticks, deadline_ticks, INCONCLUSIVE)
     assert len(outcome.answers) > 100
-    assert outcome.uncertain or horizon == 0
+    assert outcome.uncertain or deadline_ticks == 0
 
 
 def test_what_nobody_reads_takes_no_memory() -> None:
     ticks = LARGE
     alternating = int("01" * (ticks // 2), 2)
     signals = {name: Column(0, 0) for name in Signals._fields}
-    signals |= {"trigger": Column((1 << ticks) - 1, 0), "breach": Column(alternating, 0)}
-    signals |= {"owed": Column(alternating << 1, 0), "answer": Column(alternating, 0)}
+    signals |= {"trigger": Column((1 << ticks) - 1, 0), "violation": Column(alternating, 0)}
+    signals |= {"obligation_pending": Column(alternating << 1, 0), "answer": Column(alternating, 0)}
     outcome_of(signals, ticks, None)
     tracemalloc.start()
     try:

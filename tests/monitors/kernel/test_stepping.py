@@ -306,7 +306,10 @@ def test_rails_stay_two_where_a_violation_is_possible() -> None:
 
 
 def test_nothing_is_known_to_be_owed_before_the_first_tick() -> None:
-    assert monitor("whenever p sw shall eventually satisfy q").standings()[0].owed is None
+    assert (
+        monitor("whenever p sw shall eventually satisfy q").standings()[0].obligation_pending
+        is None
+    )
 
 
 @pytest.mark.parametrize("sentence", SENTENCES[:4])
@@ -318,13 +321,13 @@ def test_what_is_owed_holds_whatever_the_unknown_values_are(sentence: str) -> No
         table = rows(machine, 5, seed, 0.2)
         machine.reset()
         machine.advance(table)
-        owed = machine.standings()[0].owed
+        obligation_pending = machine.standings()[0].obligation_pending
         choices = [(True, False) if value is None else (value,) for row in table for value in row]
         for values in itertools.islice(itertools.product(*choices), 128):
             known.reset()
             known.advance(zip(*[iter(values)] * len(table[0]), strict=True))
-            assert owed in (None, known.standings()[0].owed)
-        seen.add(owed)
+            assert obligation_pending in (None, known.standings()[0].obligation_pending)
+        seen.add(obligation_pending)
     assert seen == {True, False, None}
 
 
@@ -491,7 +494,9 @@ def test_a_look_ahead_says_what_would_be_and_changes_nothing(sentence: str) -> N
         copy.advance(rows(machine, 4, 100 + seed))
         more = rows(machine, 4, 100 + seed)
         assert machine.standings_after(more) == copy.standings()
-        assert machine.owed_after(more) == tuple(each.owed for each in copy.standings())
+        assert machine.obligation_pending_after(more) == tuple(
+            each.obligation_pending for each in copy.standings()
+        )
         assert machine.state() == before
         machine.advance(block)
         other.advance(block)
@@ -506,4 +511,14 @@ def test_a_look_ahead_that_fails_changes_nothing() -> None:
         machine.standings_after([("no truth", True)])  # type: ignore[list-item]
     assert machine.state() == before
     assert machine.standings_after([]) == machine.standings()
-    assert monitor(SENTENCES[0]).owed_after([]) == (None,)
+    assert monitor(SENTENCES[0]).obligation_pending_after([]) == (None,)
+
+
+def test_the_former_names_give_the_same_values_and_a_warning() -> None:
+    machine = monitor("whenever p sw shall eventually satisfy q")
+    machine.advance([(True, False)])
+    with pytest.warns(DeprecationWarning, match="`owed` is now `obligation_pending`") as told:
+        assert machine.standings()[0].owed is True
+    assert told[0].filename == __file__
+    with pytest.warns(DeprecationWarning, match="is now `obligation_pending_after`"):
+        assert machine.owed_after([(False, True)]) == (False,)

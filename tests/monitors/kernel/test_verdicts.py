@@ -20,11 +20,11 @@ CASES: list[tuple[Truth, Truth, Truth, str]] = [
 ]
 
 
-@pytest.mark.parametrize(("broken", "owed", "triggered", "verdict"), CASES)
+@pytest.mark.parametrize(("broken", "obligation_pending", "triggered", "verdict"), CASES)
 def test_a_verdict_is_as_definite_as_what_it_rests_on(
-    broken: Truth, owed: Truth, triggered: Truth, verdict: str
+    broken: Truth, obligation_pending: Truth, triggered: Truth, verdict: str
 ) -> None:
-    assert at_end(broken, owed, triggered) == verdict
+    assert at_end(broken, obligation_pending, triggered) == verdict
 
 
 def filled(value: Truth) -> tuple[bool, ...]:

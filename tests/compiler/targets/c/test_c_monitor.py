@@ -36,7 +36,9 @@ from tests.monitoring import requirement
 from tests.programs import installed
 from tests.strategies import COUNTS, few_templates, templates
 
-SIGNALS = {name: name for name in ("trigger", "breach", "settled", "answer")} | {"open": "owed"}
+SIGNALS = {name: name for name in ("trigger", "violation", "satisfied_forever", "answer")} | {
+    "open": "obligation_pending"
+}
 ROOT = Path(__file__).parents[4]
 WITHIN = "whenever p the sw shall within 100 ticks satisfy q"
 

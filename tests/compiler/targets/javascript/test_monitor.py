@@ -29,7 +29,16 @@ from tests.strategies import templates
 
 pytestmark = needs_node
 Word = list[list[Truth]]
-SIGNALS = Signals._fields
+SIGNALS = {
+    "trigger": "trigger",
+    "violation": "violation",
+    "violation_inevitable": "violationInevitable",
+    "obligation_pending": "obligationPending",
+    "violated_if_ended": "violatedIfEnded",
+    "satisfied_forever": "satisfiedForever",
+    "answer": "answer",
+}
+"""The name of each of `Signals` in JavaScript."""
 MANY = 400 if FULL else 40
 WINDOWS = (
     "only in p mode the sw shall after {n} ticks satisfy q",
@@ -72,13 +81,13 @@ def expected(
         "atEnd": standing.verdict,
         "finite": standing.finite,
         "trigger": both["trigger"],
-        "breach": both["breach"],
-        "owed": standing.owed,
+        "violation": both["violation"],
+        "obligationPending": standing.obligation_pending,
         "firstViolation": standing.first_violation,
         "open": standing.open,
         "deadline": standing.deadline,
-        "certain": must._asdict(),
-        "possible": may._asdict(),
+        "certain": {SIGNALS[name]: value for name, value in must._asdict().items()},
+        "possible": {SIGNALS[name]: value for name, value in may._asdict().items()},
     }
 
 
@@ -109,7 +118,8 @@ def alike(
 def reduced(outcome: Mapping[str, Any]) -> dict[str, Any]:
     """Without the marks of the rails, of which Python tells some only."""
     rails = {
-        rail: {name: outcome[rail][name] for name in SIGNALS} for rail in ("certain", "possible")
+        rail: {name: outcome[rail][name] for name in SIGNALS.values()}
+        for rail in ("certain", "possible")
     }
     return {**outcome, **rails}
 

@@ -38,6 +38,10 @@ from tests.strategies import COUNTS, Template, some_templates, three_valued
 
 SCOPES = meaning.SCOPES
 R1 = "whenever too_close agilex_agent shall eventually satisfy stopped"
+FIELDS = (
+    *("finite", "trigger", "violation", "violation_inevitable", "obligation_pending"),
+    *("satisfied_forever", "answer"),
+)
 WITHIN = "when p the sw shall within 3 ticks satisfy q"
 Columns = dict[str, list[bool]]
 
@@ -192,12 +196,12 @@ def test_a_demand_is_open_until_its_answer_or_its_deadline(scope: str) -> None:
                     for t in meaning.triggers(template.condition, p, left, right)
                 )
                 if verdict.verdict != "violated":
-                    assert verdict.owed is expected, (template, seen)
+                    assert verdict.obligation_pending is expected, (template, seen)
                     assert (verdict.verdict == "inconclusive") is expected, (template, seen)
 
 
 @pytest.mark.parametrize(
-    ("timing", "horizon"),
+    ("timing", "deadline_ticks"),
     [
         ("immediately", 0),
         ("at the next timepoint", 1),
@@ -210,10 +214,10 @@ def test_a_demand_is_open_until_its_answer_or_its_deadline(scope: str) -> None:
     ],
 )
 def test_the_horizon_is_the_last_tick_that_a_demand_asks_for(
-    timing: str, horizon: int | None
+    timing: str, deadline_ticks: int | None
 ) -> None:
-    found = monitor(f"the sw shall {timing} satisfy q").REQUIREMENTS[0].horizon
-    assert found == horizon
+    found = monitor(f"the sw shall {timing} satisfy q").REQUIREMENTS[0].deadline_ticks
+    assert found == deadline_ticks
 
 
 # Unknown values -------------------------------------------------------------------------------
@@ -246,7 +250,7 @@ def test_what_is_definite_stays_whatever_the_unknown_values_are(scope: str) -> N
             partly = steps(of_template(template), columns)
             for filled in completions(columns):
                 for known, full in zip(partly, steps(of_template(template), filled), strict=True):
-                    for field in "finite trigger breach doom owed settled answer".split():
+                    for field in FIELDS:
                         value = getattr(known, field)
                         assert value in (None, getattr(full, field)), (template, columns, field)
                     assert known.decided in ("pending", full.decided), (template, columns)
@@ -278,7 +282,7 @@ def test_with_all_values_known_everything_is_definite_and_with_none_nothing(scop
     for template in of_scope(scope):
         (columns,) = drawn(template.columns, 8, 1, repr(template))
         for verdict in steps(of_template(template), columns):
-            assert None not in (verdict.finite, verdict.breach, verdict.owed)
+            assert None not in (verdict.finite, verdict.violation, verdict.obligation_pending)
             assert verdict.verdict != "no data"
         unknown: dict[str, list[Truth]] = {name: [None] * 6 for name in template.columns}
         for verdict in steps(of_template(template), unknown):
@@ -647,7 +651,8 @@ def test_a_monitor_passes_a_strict_type_check(
 
 def test_a_monitor_passes_the_linter(programs: Path) -> None:
     files = sorted(map(str, programs.glob("*.py")))
-    done = tool(sys.executable, "-m", "ruff", "check", "--isolated", "--no-cache", *files)
+    arguments = ("check", "--isolated", "--no-cache", "--target-version=py38", *files)
+    done = tool(sys.executable, "-m", "ruff", *arguments)
     assert done.returncode == 0, done.stdout
 
 

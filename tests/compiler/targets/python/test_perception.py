@@ -80,17 +80,17 @@ def module(setting: Setting) -> tuple[Any, Any]:
 
 
 def judging(setting: Setting, some: Sequence[Sent], idle: int) -> tuple[Any, list[bool | None]]:
-    """A node to which the messages have come, and what it owed last."""
+    """A node to which the messages have come, and what it said last."""
     live, monitors = module(setting)
-    node = live.Judging(monitors.MONITOR, live.SETTING)
+    node = live.OnlineEvaluator(monitors.MONITOR, live.SETTING)
     for each in sorted(some, key=lambda each: each.arrival.log_time):
         arrival = each.arrival.log_time
         time = arrival if setting.time == "log_time" else START + each.at * MS
         value = math.nan if each.value is None else each.value
         node.arrive(each.topic, time, arrival, SimpleNamespace(data=value, other=4))
-        owed = list(node.owed())
+        obligation_pending = list(node.obligation_pending())
     node.pass_to(arrival + idle * MS)
-    return node, owed
+    return node, obligation_pending
 
 
 @pytest.mark.slow
@@ -114,14 +114,14 @@ def test_every_tick_is_that_of_the_audit(setting: Setting, some: list[Sent], idl
 @examples(12)
 @given(settings_, messages)
 def test_what_is_owed_on_arrival_is_what_a_watch_says(setting: Setting, some: list[Sent]) -> None:
-    _, owed = judging(setting, some, 0)
+    _, obligation_pending = judging(setting, some, 0)
     session = Session(plan_of(setting))
     for each in sorted(some, key=lambda each: each.arrival.log_time):
         session.arrive(each.arrival)
     if session.origin is None:
         return
-    said = [state.owed for state in session.states()]
-    assert owed == said
+    said = [state.obligation_pending for state in session.states()]
+    assert obligation_pending == said
 
 
 @cache

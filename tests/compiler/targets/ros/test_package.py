@@ -1,4 +1,4 @@
-"""What packages of ROS 1 and ROS 2 share: names that are legal, texts that run on Python 3.10."""
+"""What packages of ROS 1 and ROS 2 share: names that are legal, texts that run by themselves."""
 
 import keyword
 import re
@@ -14,7 +14,6 @@ from hypothesis import strategies as st
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.project.folder import load
 from compiler.project.paths import expanded_paths
-from compiler.targets.python import interceptor
 from compiler.targets.ros import package as p
 from compiler.targets.target import TargetOptions
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -66,26 +65,6 @@ def test_the_tests_of_a_package_pass_by_the_standard_library_alone(
     assert ran.returncode == 0, ran.stderr
     assert "Ran 5 tests" in ran.stderr
     assert set(package.ids) >= set(package.parameters[-1].value)  # type: ignore[arg-type]
-
-
-@pytest.mark.slow
-def test_emitted_texts_run_on_python_3_10(tmp_path: Path) -> None:
-    for path in some(("requirements/agv", "requirements/r1.fret"), 2):
-        written(described(path), tmp_path)
-    node = described("requirements/r1.fret").interception
-    assert node is not None
-    for ros in (1, 2):
-        text = interceptor.text(replace(node, ros=ros), "bindings.toml")
-        (tmp_path / f"interceptor{ros}.py").write_text(text)
-    command = [str(Path(sys.executable).with_name("vermin")), "--eval-annotations", "--no-tips"]
-    ran = subprocess.run(
-        [*command, "--violations", "-t=3.10-", str(tmp_path)],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert ran.returncode == 0, ran.stdout
-    assert "Minimum required versions: 3.10" in ran.stdout
 
 
 @pytest.mark.slow

@@ -48,7 +48,7 @@ def test_a_robot_of_which_all_is_known_drives(package: Path) -> None:
     robot, _ = driving(package)
     assert robot.diagnostics["r1_monitor: R1"].level == OK
     assert robot.diagnostics["r1_monitor: sources"].level == OK
-    assert [line["owed"] for line in robot.news][-1] is False
+    assert [line["obligation_pending"] for line in robot.news][-1] is False
 
 
 def test_a_demand_stops_the_wheels_when_it_arrives_and_not_at_its_tick(package: Path) -> None:
@@ -62,14 +62,14 @@ def test_a_demand_stops_the_wheels_when_it_arrives_and_not_at_its_tick(package: 
     assert len(robot.world.sent["/cmd_vel_filtered"]) > before[1]
     robot.range, robot.obeys, robot.speed = NEAR, False, FORWARD  # it rolls on
     robot.world.run(1.0)
-    assert robot.news[-1]["owed"] is True
+    assert robot.news[-1]["obligation_pending"] is True
     assert robot.diagnostics["r1_monitor: R1"].level == WARN
     robot.range = 3.0  # the obstacle has gone; the demand is still there
     robot.world.run(1.0)
     assert robot.wheels == 0.0
     robot.obeys = True
     robot.world.run(1.0)
-    assert robot.news[-1]["owed"] is False
+    assert robot.news[-1]["obligation_pending"] is False
     assert robot.wheels == FORWARD
 
 

@@ -141,7 +141,7 @@ def test_every_tick_is_that_of_the_audit(
     subject = subjects[setting]
     ordered = sorted(some, key=lambda each: each.arrival.log_time)
     posed = [Posed(**vars(each), rank=rank) for rank, each in enumerate(ordered)]
-    ledger = node(subject.package, posed, idle)._voice._guard._judging.ledger
+    ledger = node(subject.package, posed, idle)._status_publisher._supervisor._evaluator.ledger
     _, _, recording = recorded(subject.plan, posed, idle)
     rows = audited_rows(subject.plan, recording)
     live = [(ledger.time(i), dict(ledger.row(i))) for i in range(len(ledger))]
@@ -156,38 +156,38 @@ DRIVER = """
 #include <iostream>
 #include <string>
 #include "setting.hpp"
-#include "guard.hpp"
+#include "stop_supervisor.hpp"
 
 struct Point { double x, y, z; };
 struct Posed { Point point; };
 
-static void tell(fretc::Guard<fretc::Machine> & guard, double steady)
+static void tell(fretc::StopSupervisor<fretc::Machine> & supervisor, double steady)
 {
-  std::printf("%s", guard.stop(steady) ? "[true" : "[false");
-  for (const std::string & line : guard.news()) { std::printf(", %s", line.c_str()); }
+  std::printf("%s", supervisor.stop(steady) ? "[true" : "[false");
+  for (const std::string & line : supervisor.news()) { std::printf(", %s", line.c_str()); }
   std::printf("]\\n");
 }
 
 int main()
 {
-  fretc::Setting setting = fretc::setting();
+  fretc::BindingConfig setting = fretc::setting();
   long long lateness, topic, stamp, arrival;
   std::cin >> setting.stamped >> lateness;
   setting.lateness = lateness;
-  fretc::Guard<fretc::Machine> guard(setting, {0, 1}, 0.02);
+  fretc::StopSupervisor<fretc::Machine> supervisor(setting, {0, 1}, 0.02);
   std::string value;
   while (std::cin >> topic >> stamp >> arrival >> value) {
     const Posed message{{std::stod(value), 0.0, 0.0}};
     const double steady = static_cast<double>(arrival) / 1e9;
     if (topic < 0) {
-      guard.pass_to(arrival);
+      supervisor.pass_to(arrival);
     } else {
-      guard.arrive(topic, stamp, arrival, steady,
+      supervisor.arrive(topic, stamp, arrival, steady,
         topic == 0 ? fretc::read_0(message) : fretc::read_1(message));
     }
-    tell(guard, steady);
+    tell(supervisor, steady);
   }
-  for (const auto & tick : guard.judging().ticks()) {
+  for (const auto & tick : supervisor.evaluator().ticks()) {
     std::printf("[%lld", static_cast<long long>(tick.time));
     for (const auto truth : tick.row) { std::printf(", %d", truth); }
     std::printf("]\\n");
@@ -223,21 +223,21 @@ def test_the_package_in_cpp_says_the_same(
     package = subjects[setting].package
     module = World().process().load(package, "perception")
     monitors = World().process().load(package, "monitor")
-    guard = module.Guard(monitors.MONITOR, module.SETTING, (), 0.02)
+    supervisor = module.StopSupervisor(monitors.MONITOR, module.SETTING, (), 0.02)
     ordered = sorted(some, key=lambda each: each.arrival.log_time)
     posed = [Posed(**vars(each), rank=rank) for rank, each in enumerate(ordered)]
     lines = [f"{int(module.SETTING.stamped)} {module.SETTING.lateness}"]
     expected = []
     for each in posed:
         arrival = each.arrival.log_time
-        guard.arrive(each.topic, each.message, arrival, arrival / 1e9)
-        expected.append([guard.stop(arrival / 1e9), *_states(guard)])
+        supervisor.arrive(each.topic, each.message, arrival, arrival / 1e9)
+        expected.append([supervisor.stop(arrival / 1e9), *_states(supervisor)])
         value = "nan" if each.value is None else each.value
         topic = module.SETTING.topics.index(each.topic)
         lines.append(f"{topic} {START + each.at * MS} {arrival} {value}")
     end = posed[-1].arrival.log_time + idle * MS
-    guard.pass_to(end)
-    expected.append([guard.stop(end / 1e9), *_states(guard)])
+    supervisor.pass_to(end)
+    expected.append([supervisor.stop(end / 1e9), *_states(supervisor)])
     lines.append(f"-1 0 {end} 0")
     ran = subprocess.run(
         [program], input="\n".join(lines), capture_output=True, text=True, check=False
@@ -249,7 +249,7 @@ def test_the_package_in_cpp_says_the_same(
         known |= {line["requirement"]: line for line in news}
         found = [tuple(known[id][name] for name in STATE) for id in ("R0", "R1")]
         assert [stop, *found] == expectation
-    ledger = guard._judging.ledger
+    ledger = supervisor._evaluator.ledger
     names = [meaning.name for meaning in module.SETTING.meanings]
     rows = [
         [ledger.time(i), *(_code(ledger.row(i)[name]) for name in names)]
@@ -258,11 +258,11 @@ def test_the_package_in_cpp_says_the_same(
     assert told[len(expected) :] == rows
 
 
-STATE = ("verdict", "owed", "triggered_ns", "violated_ns")
+STATE = ("verdict", "obligation_pending", "triggered_ns", "violated_ns")
 
 
-def _states(guard: Any) -> list[tuple[Any, ...]]:
-    return [tuple(getattr(state, name) for name in STATE) for state in guard.states()]
+def _states(supervisor: Any) -> list[tuple[Any, ...]]:
+    return [tuple(getattr(state, name) for name in STATE) for state in supervisor.states()]
 
 
 def _code(truth: bool | None) -> int:

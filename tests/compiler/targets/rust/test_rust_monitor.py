@@ -100,10 +100,10 @@ def passes(cargo: str, folder: Path) -> bool:
 
 def test_words_reach_each_verdict_and_the_deadline() -> None:
     found = {word.name: word for word in witness_traces(requirement(WITHIN))}
-    assert [*found] == ["soonest_breach", "soonest_pending", "latest_state"]
+    assert [*found] == ["soonest_violation", "soonest_pending", "latest_state"]
     assert sum(ticks.count for ticks in found["latest_state"].ticks) == 100
-    assert found["soonest_breach"].ticks[-1].verdict == "violated"
-    assert sum(ticks.count for ticks in found["soonest_breach"].ticks) == 101
+    assert found["soonest_violation"].ticks[-1].verdict == "violated"
+    assert sum(ticks.count for ticks in found["soonest_violation"].ticks) == 101
     assert not witness_traces(
         requirement("whenever persisted(3, p) the sw shall immediately satisfy q")
     )

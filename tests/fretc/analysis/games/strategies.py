@@ -93,6 +93,6 @@ def first_breaches(
     """
     found: dict[str, int | None] = {}
     for requirement in requirements:
-        breach = evaluate(requirement.watch.breach, known, ticks)
-        found[requirement.id] = (breach & -breach).bit_length() - 1 if breach else None
+        violation = evaluate(requirement.watch.violation, known, ticks)
+        found[requirement.id] = (violation & -violation).bit_length() - 1 if violation else None
     return found

@@ -40,7 +40,7 @@ def assert_lost(setting: RealizabilityProblem) -> None:
     assert not broken(setting.assumptions, alphabet, play), play
     breaches = first_breaches(setting.requirements, known(setting, letters), len(letters))
     earlier = {tick for tick in breaches.values() if tick is not None} - {len(letters) - 1}
-    assert not earlier, "a play ends with the first breach"
+    assert not earlier, "a play ends with the first violation"
 
 
 def known(setting: RealizabilityProblem, letters: Sequence[Letter]) -> dict[str, int]:

@@ -28,11 +28,13 @@ WITHIN = "whenever near the rover shall within 2 ticks satisfy still"
 
 
 def violations_of(
-    outcome: Outcome, horizon: int | None = None, demand: DemandText = NO_DEADLINE
+    outcome: Outcome, deadline_ticks: int | None = None, demand: DemandText = NO_DEADLINE
 ) -> list[ViolationInterval]:
     log = recorded([FAR] * outcome.ticks, [MOVING] * outcome.ticks)
     return list(
-        violations(outcome, demand, horizon, lambda t: Moment(t, t * S, float(t)), log, ["d"])
+        violations(
+            outcome, demand, deadline_ticks, lambda t: Moment(t, t * S, float(t)), log, ["d"]
+        )
     )
 
 
@@ -62,7 +64,7 @@ def test_the_trigger_is_the_oldest_whose_deadline_has_passed() -> None:
 
 
 def test_one_that_was_answered_is_not_to_blame() -> None:
-    stretches = violations_of(outcome([(9, 9)], [5, 7, 8], answers=[(5, 6)]), horizon=4)
+    stretches = violations_of(outcome([(9, 9)], [5, 7, 8], answers=[(5, 6)]), deadline_ticks=4)
     assert triggers_of(stretches) == [7]
 
 
@@ -75,13 +77,13 @@ def test_without_a_deadline_it_is_the_last_trigger_and_at_the_end_the_oldest_ope
 
 def test_the_deadline_is_told_where_there_is_one_within_the_run() -> None:
     one = outcome([(9, 9)], [5])
-    (violation,) = violations_of(one, horizon=4, demand=DemandText("still", 4))
+    (violation,) = violations_of(one, deadline_ticks=4, demand=DemandText("still", 4))
     assert violation.deadline == Moment(9, 9 * S, 9.0)
     assert violation.missing == "still"
-    (none,) = violations_of(one, horizon=4, demand=DemandText("still"))
+    (none,) = violations_of(one, deadline_ticks=4, demand=DemandText("still"))
     assert none.deadline is None
     (later,) = violations_of(
-        outcome([(9, 9)], [5], ticks=10), horizon=6, demand=DemandText("still", 6)
+        outcome([(9, 9)], [5], ticks=10), deadline_ticks=6, demand=DemandText("still", 6)
     )
     assert later.deadline is None
 

@@ -1,4 +1,4 @@
-"""The picture of a play: each column in its place, and the breach where it is."""
+"""The picture of a play: each column in its place, and the violation where it is."""
 
 from typing import Any
 

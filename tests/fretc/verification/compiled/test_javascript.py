@@ -30,6 +30,6 @@ def test_values_of_other_types_are_told_apart(tmp_path: Path) -> None:
     """What is no truth value counts as one in conditions; as a signal it does not."""
     one = requirement("whenever p the sw shall eventually satisfy q")
     monitor = given_javascript(one)
-    told = monitor.text[monitor.text.index("owed: ") :].partition(",\n")[0]
+    told = monitor.text[monitor.text.index("obligationPending: ") :].partition(",\n")[0]
     wrong = edited(monitor, f"{told},", f"{told} ? 1 : 0,")
     assert Checker(javascript, tmp_path).kind(wrong, one) == REFUTED

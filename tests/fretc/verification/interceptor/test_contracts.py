@@ -17,7 +17,7 @@ from fretish.bindings.declarations import Interception, InterceptorForm
 from monitors.interceptor import Options
 from tests.each import each
 from tests.effort import FULL, some
-from tests.loops import interceptor_options
+from tests.loops import interceptor_options, with_match
 from tests.proofs import outcome
 
 MS = 1_000_000
@@ -126,6 +126,10 @@ def test_a_channel_that_is_not_watched_is_an_assumption() -> None:
 SCANNED = "    return replace(state, scan_age=0), None"
 PASSED = "return after, ZERO if halted(after, options) else command"
 CASE = "        case ScanHeard():"
+"""With `match`."""
+ASKS = "    if isinstance(event, ScanHeard):"
+RETURNS = '-> "tuple[State, Velocity | None]":\n'
+ABOUT = '    """Process a scan'
 GROWS = "stop_age=min(state.stop_age + 1, options.stop_timeout)"
 HELD = "held=options.hold if requested else state.held"
 WATCH_STOP = "        or expired(state.stop_age, options.stop_timeout)\n"
@@ -133,7 +137,7 @@ WATCH_SCAN = "        or expired(state.scan_age, options.scan_timeout)\n"
 WATCH_COMMAND = "        or expired(state.command_age, options.command_timeout)\n"
 RUNG = "output = ZERO if halted(older, options) else state.command"
 ASKED = "return after, ZERO if requested and not options.event_driven else None"
-HANDED = "            return hear_command(state, command, options)"
+HANDED = "        return hear_command(state, event.command, options)"
 PAID = (
     "less = replace(older, held=max(state.held - 1, 0))\n"
     "    output = ZERO if halted(less, options) else state.command"
@@ -265,9 +269,7 @@ def test_zero_in_whole_numbers_is_none() -> None:
 
 def test_a_state_has_fields_by_which_states_are_told_apart() -> None:
     """As a NamedTuple it would have none that are looked at."""
-    changed = mutant(
-        ("@dataclass(frozen=True, slots=True)\nclass State:", "class State(NamedTuple):")
-    )
+    changed = mutant(("@dataclass(frozen=True)\nclass State:", "class State(NamedTuple):"))
     assert reason(changed) == ("fretc cannot read its core: `class State(NamedTuple):`")
 
 
@@ -370,12 +372,17 @@ MOST = 3000 if FULL else 1000
         (CASE, f"        case None:\n            pass\n{CASE}", "`None`"),
         ("def hear_scan(state: State,", "def hear_scan(state: State, *more: State,", "`def hear"),
         ("class ScanHeard:", "class ScanHeard(metaclass=type):", "`@dataclass"),
+        (ASKS, "    if isinstance(state.command, Velocity):", "`isinstance(state.command, Vel"),
+        (ASKS, "    if isinstance(event, bool):", "`isinstance(event, bool)`"),
+        (ASKS, "    if isinstance(event, (ScanHeard, TimerRang)):", "`isinstance(event, (Scan"),
+        (f"{RETURNS}{ABOUT}", f"-> \"print()\":\n{ABOUT}", "`def hear_scan"),
+        (f"{RETURNS}{ABOUT}", f"-> \"(\":\n{ABOUT}", "`def hear_scan"),
     ],
 )  # fmt: skip
 def test_a_core_that_may_not_be_pure_is_not_executed(case: tuple[str, str, str]) -> None:
     """By none of those that explore it."""
     old, new, why = case
-    changed = mutant((old, new))
+    changed = mutant((old, new), of=with_match(EMITTED) if old == CASE else EMITTED)
     if "HOLD" in new:
         changed = mutant((SCANNED, "    return replace(state, held=HOLD.hold), None"), of=changed)
     message = reason(changed)
@@ -409,7 +416,7 @@ def test_a_node_that_changes_the_core_is_told(line: str) -> None:
         (PASSED, "return after, ZERO if command == ZERO else command", LOOKS),
         (PASSED, "return after, command if command else ZERO", LOOKS),
         (PASSED, "return after, Velocity(command.vx)", LOOKS),
-        (HANDED, "            return hear_command(state, max(command, ZERO), options)", LOOKS),
+        (HANDED, "        return hear_command(state, max(event.command, ZERO), options)", LOOKS),
         (
             PASSED,
             f"return replace(after, held=command), {PASSED[14:]}",
@@ -430,7 +437,8 @@ def test_where_nothing_can_be_said_the_reason_is(case: tuple[str, str, str]) -> 
 
 
 def test_a_core_without_an_event_is_none() -> None:
-    other = (("class ScanHeard:", "class SensorHeard:"), (CASE, CASE.replace("Scan", "Sensor")))
+    asked = "    if isinstance(event, ScanHeard):"
+    other = (("class ScanHeard:", "class SensorHeard:"), (asked, asked.replace("Scan", "Sensor")))
     said_nothing("its core has no `ScanHeard`", *other)
 
 

@@ -40,7 +40,7 @@ class Simulation:
         self.monitor: Any = load("monitor", known.safety)
         self.core: dict[str, Any] = {}
         exec(compile(known.interceptor, "core", "exec", dont_inherit=True), self.core)
-        settings = {name: getattr(known.settings, name) for name in Options.__slots__}
+        settings = {name: getattr(known.settings, name) for name in vars(known.settings)}
         self.options = self.core["Options"](**settings)
         self.state = self.core["initial"](self.options)
         self.phase = self.choose.randint(1, PERIOD)
@@ -56,7 +56,7 @@ class Simulation:
         stopped = self._stands()
         self.monitor.step(near=near, stopped=stopped)
         (signals,) = self.monitor.must.signals()
-        request = bool(signals.trigger or signals.owed)
+        request = bool(signals.trigger or signals.obligation_pending)
         self._send(request)
         end = self.now + self.channel.cells * PERIOD
         commands = sorted(
@@ -65,7 +65,7 @@ class Simulation:
         if self.channel.punctual and not commands:
             commands = [end]
         self._pass(end, commands)
-        values = tuple(getattr(self.state, name) for name in self.state.__slots__)
+        values = tuple(getattr(self.state, name) for name in vars(self.state))
         return Row(near, stopped, request, values, self.since is None, self.losses)
 
     def _stands(self) -> bool:

@@ -325,7 +325,12 @@ def test_what_a_core_says_of_itself_does_not_release_a_stop() -> None:
     [
         ("w_1", "Window(60, 3)", "far = w_1.step(True, near)", "far"),
         ("x_broken", "-1", "x_broken = x_broken + 1 if near else x_broken", "x_broken > 5"),
-        ("x_doomed", "-1", "x_doomed = x_doomed + 1 if near else x_doomed", "x_doomed > 5"),
+        (
+            "x_violation_inevitable",
+            "-1",
+            "x_violation_inevitable = x_violation_inevitable + near",
+            "x_violation_inevitable > 5",
+        ),
     ],
 )
 def test_a_safety_function_that_remembers_more_than_is_put_back_is_not_stepped(

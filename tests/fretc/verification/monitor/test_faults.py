@@ -69,7 +69,7 @@ FAULTS = (
     (WITHIN, "False, m and q)", "False, q)", DIFFERS),
     (WITHIN, "False, m and q)", "False, m)", DIFFERS),
     (WITHIN, "False, m and q)", "False, False)", DIFFERS),
-    # What is settled, doomed, failed, broken.
+    # What is satisfied_forever, violation_inevitable, failed, broken.
     (WITHIN, "since_2, False, False, m and q)", "since_2, False, q, m and q)", REFUSED),
     (WITHIN, "since_1, False, since_2", "since_1, since_2, since_2", DIFFERS),
     (WITHIN, "since_2, False, False, m and q)", "since_2, since_2, False, m and q)", REFUTED),
@@ -117,8 +117,8 @@ FAULTS = (
     (WITHIN, "self.r1_last, self.r1_open", "self.r1_open, self.r1_last", REFUSED),
     # Columns.
     (WITHIN, "trigger=m & p,", f"trigger=m & p & {LONG},", REFUSED),
-    (WITHIN, "breach=since_1,", f"breach=since_1 & {LONG},", REFUSED),
-    (WITHIN, "owed=since_2,", f"owed=since_2 & {LONG},", REFUSED),
+    (WITHIN, "violation=since_1,", f"violation=since_1 & {LONG},", REFUSED),
+    (WITHIN, "obligation_pending=since_2,", f"obligation_pending=since_2 & {LONG},", REFUSED),
     (WITHIN, "answer=m & q,", f"answer=m & q & {LONG},", REFUSED),
     (WITHIN, "since_2 = held_1", f"since_2 = held_1 & {LONG}", REFUSED),
     (WITHIN, "held_1 = since(not_q & m,", f"held_1 = since(not_q & m & {LONG},", REFUSED),
@@ -127,9 +127,9 @@ FAULTS = (
     (WITHIN, "trigger=m & p,", "trigger=p & m,", REFUSED),
     (WITHIN, "trigger=m & p,", "trigger=m,", DIFFERS),
     (WITHIN, "answer=m & q,", "answer=m | q,", DIFFERS),
-    (WITHIN, "settled=0,", "settled=1,", DIFFERS),
-    (WITHIN, "doom=0,", "doom=None,", DIFFERS),
-    (WITHIN, "                doom=0,\n", "", DIFFERS),
+    (WITHIN, "satisfied_forever=0,", "satisfied_forever=1,", DIFFERS),
+    (WITHIN, "violation_inevitable=0,", "violation_inevitable=None,", DIFFERS),
+    (WITHIN, "                violation_inevitable=0,\n", "", DIFFERS),
     (WITHIN, "not_q & m, m & p & not_q, 3, every", "not_q & m, m & p & not_q, 4, every", DIFFERS),
     (WITHIN, "p: int, not_q: int", "not_q: int, p: int", REFUSED),
     (WITHIN, "        since_2 = held_1\n", "        since_2 = held_1\n        every = 0\n", REFUSED),

@@ -13,7 +13,7 @@ from fretc.watch.sources.dds import Dds
 from fretc.watch.sources.source import Arrival, Idle, Opened
 from fretc.watch.watch import Watch
 from fretish.diagnostics.diagnostic import Diagnostic
-from monitors.guard import ERROR, OK
+from monitors.stop_supervisor import ERROR, OK
 from tests.dds import domain, environment
 from tests.fretc.watch.sent import Sent, Setting, plan_of
 from tests.programs import needs_package

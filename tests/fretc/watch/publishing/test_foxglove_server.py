@@ -78,7 +78,7 @@ def test_a_client_sees_the_topics_as_they_came_and_the_state_of_each_requirement
         lost = ConnectionLost(START + next(at) * MS, Diagnostic(Code.ROBOT_NOT_REACHED, "gone"))
         take(watch, publishing, lost)
         client.wait("R3 is stale", lambda: state(client, "R3").get("level") == "STALE")
-        assert state(client, "R3")["owed"] == "perhaps"
+        assert state(client, "R3")["obligation_pending"] == "perhaps"
         assert state(client, "R1")["level"] == "ERROR"
         assert state(client, "R1")["verdict"] == "violated"
         raw = Arrival(DEFINED, b"\0\1\0\0\1", START + next(at) * MS, 5)

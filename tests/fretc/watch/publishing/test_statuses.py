@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 
 from fretc.watch.publishing.statuses import SOURCES, statuses
 from fretc.watch.session import Session
-from monitors.guard import ERROR, OK, STALE, WARN, State, Status, status_of
 from monitors.kernel.verdicts import Truth
+from monitors.stop_supervisor import ERROR, OK, STALE, WARN, State, Status, status_of
 from tests.fretc.watch.sent import Sent, Setting, plan_of
 
 VERDICTS = ("satisfied", "violated", "inconclusive", "vacuous", "no data")
@@ -25,18 +25,20 @@ states = st.builds(
 def test_red_is_never_lost_and_green_owes_nothing(state: State, fault: str, violated: bool) -> None:
     level = status_of(state, fault, violated=violated).level
     assert (level == ERROR) == (violated or state.verdict == "violated")
-    assert level != OK or (state.owed is False and not fault)
-    assert level != WARN or state.owed is not False
+    assert level != OK or (state.obligation_pending is False and not fault)
+    assert level != WARN or state.obligation_pending is not False
 
 
 def test_each_level_is_that_of_the_table() -> None:
-    def level(verdict: str, owed: Truth, fault: str) -> int:
-        return status_of(State("R0", verdict, owed, None, None, None, None), fault).level
+    def level(verdict: str, obligation_pending: Truth, fault: str) -> int:
+        return status_of(
+            State("R0", verdict, obligation_pending, None, None, None, None), fault
+        ).level
 
-    for verdict, owed, fault in product(VERDICTS, (True, False, None), ("", "gone")):
-        expected = STALE if fault else OK if owed is False else WARN
+    for verdict, obligation_pending, fault in product(VERDICTS, (True, False, None), ("", "gone")):
+        expected = STALE if fault else OK if obligation_pending is False else WARN
         expected = ERROR if verdict == "violated" else expected
-        assert level(verdict, owed, fault) == expected
+        assert level(verdict, obligation_pending, fault) == expected
 
 
 def of(session: Session) -> dict[str, Status]:

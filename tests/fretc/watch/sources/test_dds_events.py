@@ -30,7 +30,7 @@ from fretc.watch.sources.source import Arrival, Diagnosing, Opened, Problem, Rec
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.extras import install_help
 from fretish.diagnostics.rendering import render
-from monitors.guard import Status
+from monitors.stop_supervisor import Status
 from tests.dds import domain, environment
 from tests.programs import needs_package
 from tests.ros1 import until
@@ -194,7 +194,7 @@ def test_what_a_publisher_sent_while_it_was_out_of_reach_was_missed(here: int) -
 
 
 def test_what_is_known_is_published_as_a_node_does(here: int) -> None:
-    said = Status(2, "fretc watch: R1", "violated \udc80", (("owed", "True"),))
+    said = Status(2, "fretc watch: R1", "violated \udc80", (("obligation_pending", "True"),))
     with Listening("/stop") as listening, Listening("/diagnostics") as hearing:
         listening.source.diagnose([said])
         hearing.hears(2)

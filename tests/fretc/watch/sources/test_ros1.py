@@ -14,7 +14,7 @@ import pytest
 from fretc.watch.sources.ros1 import Ros1
 from fretc.watch.sources.source import ConnectionLost, Opened, Problem, Reconnected
 from fretish.diagnostics.diagnostic import Code
-from monitors.guard import ERROR, OK
+from monitors.stop_supervisor import ERROR, OK
 from tests.command import Fretc
 from tests.effort import full_only
 from tests.fretc.watch.watched import Watched
@@ -65,7 +65,7 @@ def folder(tmp_path: Path) -> Path:
 def test_verdicts_of_a_running_robot_are_those_of_the_audit_of_the_recording(
     here: Ros, folder: Path, fretc: Fretc, tmp_path: Path
 ) -> None:
-    """And other nodes read them as diagnostics; the levels are those of `monitors/guard.py`."""
+    """And other nodes read them as diagnostics, with the levels of emitted nodes."""
     debians_python("diagnostic_msgs.msg")
     here.master()
     robot = here.world("robot")

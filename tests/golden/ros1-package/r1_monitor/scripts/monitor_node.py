@@ -12,11 +12,17 @@ from functools import partial
 from threading import Thread
 from typing import Any
 
-if sys.version_info < (3, 10):
-    sys.exit(f"monitor_node.py: it needs Python 3.10 or later, not {sys.version.split()[0]}")
+if sys.version_info < (3, 8):
+    sys.exit("monitor_node.py: it needs Python 3.8 or later, not " + sys.version.split()[0])
 
 from r1_monitor.monitor import MONITOR
-from r1_monitor.perception import SETTING, Channels, Guard, Voice, single_signals
+from r1_monitor.perception import (
+    SETTING,
+    Channels,
+    StatusPublisher,
+    StopSupervisor,
+    single_signals,
+)
 
 HELP = """\
 usage: monitor_node.py [ROS ARGUMENTS]
@@ -45,12 +51,12 @@ def tell(what: str) -> None:
     print(f"monitor_node.py: {what}", file=sys.stderr, flush=True)
 
 
-def types(message: Any) -> dict[str, str]:
+def types(message: Any) -> "dict[str, str]":
     """The type of each field of a message."""
     return dict(zip(message.__slots__, message._slot_types))
 
 
-def identifiers(value: Any) -> list[str]:
+def identifiers(value: Any) -> "list[str]":
     """A parameter that is a list of ids."""
     if not isinstance(value, list) or not all(isinstance(each, str) for each in value):
         raise ValueError(f"stop_for is a list of ids, not {value!r}")
@@ -67,7 +73,7 @@ class Node:
         """The reason why ROS has ended the node."""
         self.end: Callable[[], None] = lambda: None
 
-    def run(self, arguments: list[str]) -> None:
+    def run(self, arguments: "list[str]") -> None:
         """Subscribe and publish until ROS is shut down."""
         import rosgraph
         import rospy
@@ -80,7 +86,7 @@ class Node:
         from roslib.message import get_message_class
 
         parameter = rospy.get_param
-        guard = Guard(
+        supervisor = StopSupervisor(
             MONITOR,
             SETTING,
             identifiers(parameter("~stop_for", list(STOP_FOR))),
@@ -111,10 +117,10 @@ class Node:
             report,
             lambda: rospy.get_rostime().to_nsec(),
         )
-        voice = Voice(guard, channels, parameter("~heartbeat", HEARTBEAT))
+        publisher = StatusPublisher(supervisor, channels, parameter("~heartbeat", HEARTBEAT))
 
         def close() -> None:
-            voice.close()
+            publisher.close()
             time.sleep(FLUSH)
 
         rospy.on_shutdown(close)
@@ -125,15 +131,15 @@ class Node:
             if message is None:
                 raise ImportError(f"there is no message {kind}")
             singles = single_signals(SETTING, topic, message(), types)
-            hear = partial(voice.hear, topic, singles=singles)
-            rospy.Subscriber(topic, message, hear, queue_size=10)
+            on_message = partial(publisher.on_message, topic, singles=singles)
+            rospy.Subscriber(topic, message, on_message, queue_size=10)
         # A steady clock: simulated or corrected time must not stop the watchdogs. A tick that is
         # late is not made up for: ticks in a bunch would end a hold too early.
         due = time.monotonic()
         while not rospy.is_shutdown():
-            due = max(due + voice.heartbeat, time.monotonic())
+            due = max(due + publisher.heartbeat, time.monotonic())
             time.sleep(max(0.0, due - time.monotonic()))
-            voice.beat()
+            publisher.on_heartbeat()
 
     def _shut_down(self, reason: str) -> None:
         self.reason = reason
@@ -142,7 +148,7 @@ class Node:
 class Worker(Thread):
     """The node, on a thread of its own."""
 
-    def __init__(self, node: Node, arguments: list[str]) -> None:
+    def __init__(self, node: Node, arguments: "list[str]") -> None:
         super().__init__(daemon=True)
         self._node, self._arguments = node, arguments
         self.error: Exception | None = None
@@ -155,7 +161,7 @@ class Worker(Thread):
             self.error = error
 
 
-def main(arguments: list[str]) -> int:
+def main(arguments: "list[str]") -> int:
     """Run the node; gives the exit status.
 
     A signal is only noted, and this thread shares no lock: whatever it interrupts, nothing waits.

@@ -198,9 +198,9 @@ inline Truth truth_1(const Number * row, const Truth * held, Time now)
   return found.stopped;
 }
 
-inline const Setting & setting()
+inline const BindingConfig & setting()
 {
-  static const Setting found{
+  static const BindingConfig found{
     {
       { 0, 300000000},
       { 1, 100000000},

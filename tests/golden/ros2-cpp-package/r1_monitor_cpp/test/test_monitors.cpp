@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "../src/setting.hpp"
-#include "../src/guard.hpp"
+#include "../src/stop_supervisor.hpp"
 
 namespace
 {
@@ -72,10 +72,10 @@ void test_nothing_has_come()
   for (std::size_t i = 0; i < fretc::Machine::COUNT; i++) {
     all.push_back(i);
   }
-  fretc::Guard<fretc::Machine> guard(fretc::setting(), all, 1.0);
-  expect(guard.stop(0.0), "without a message the robot stands");
-  guard.pass_to(fretc::SECOND);
-  expect(guard.stop(1.0), "without a message the robot stands, whatever time passes");
+  fretc::StopSupervisor<fretc::Machine> supervisor(fretc::setting(), all, 1.0);
+  expect(supervisor.stop(0.0), "without a message the robot stands");
+  supervisor.pass_to(fretc::SECOND);
+  expect(supervisor.stop(1.0), "without a message the robot stands, whatever time passes");
 }
 
 }  // namespace

@@ -24,7 +24,8 @@ import sensor_msgs.msg
 from std_msgs.msg import Bool, String
 
 from .monitor import MONITOR
-from .perception import Channels, Guard, SETTING, single_signals, STALE, Status, Voice
+from .perception import Channels, SETTING, single_signals, STALE
+from .perception import Status, StatusPublisher, StopSupervisor
 
 NAME = "r1_monitor"
 STOP = "/gwendolen_control"
@@ -53,7 +54,7 @@ PARAMETERS = (
     (
         "stop_for",
         ["R1"],
-        "the requirements that stop the robot while owed",
+        "the requirements that stop the robot while an obligation of them is pending",
     ),
 )
 """What can be set when the node starts: name, default, description, and its least and most."""
@@ -71,7 +72,7 @@ KEPT = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class MonitorNode(LifecycleNode):
-    """Brings messages to the guard while it is active, and publishes what follows."""
+    """Brings messages to the supervisor while it is active, and publishes what follows."""
 
     def __init__(self):
         """Declare the parameters; nothing is heard or said yet."""
@@ -82,7 +83,7 @@ class MonitorNode(LifecycleNode):
             text = "of the bindings, from which monitor.py and perception.py were made"
             self.declare_parameter(name, value, described(text), ignore_override=True)
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
-        self._voice = None
+        self._status_publisher = None
         """There while the node is active."""
         self._stops = self._verdicts = self._diagnostics = None
         self._destructions = []
@@ -93,7 +94,7 @@ class MonitorNode(LifecycleNode):
     def on_configure(self, state):
         """Create the publishers; refuse what could only fail later."""
         try:
-            self._new_voice()
+            self._new_status_publisher()
             for topic, kind, _ in SOURCES:
                 singles(topic, kind)
         except ValueError as error:
@@ -108,12 +109,14 @@ class MonitorNode(LifecycleNode):
     def on_activate(self, state):
         """Begin a run, with a monitor that knows nothing: the robot stands until it does."""
         result = super().on_activate(state)
-        self._voice = self._new_voice()
-        self._voice.beat()
+        self._status_publisher = self._new_status_publisher()
+        self._status_publisher.on_heartbeat()
         for source in SOURCES:
             self._subscribe(*source)
         # A steady clock: simulated or corrected time must not stop a watchdog.
-        timer = self.create_timer(self._voice.heartbeat, self._voice.beat, clock=self._steady)
+        publisher = self._status_publisher
+        timer = self.create_timer(
+            publisher.heartbeat, publisher.on_heartbeat, clock=self._steady)
         self._destructions.append(lambda: self.destroy_timer(timer))
         return result
 
@@ -141,14 +144,14 @@ class MonitorNode(LifecycleNode):
 
     def close(self):
         """Say the last that is said, before the process ends."""
-        if self._voice is not None:
+        if self._status_publisher is not None:
             self._stand_down()
             time.sleep(FLUSH)
 
     def _stand_down(self):
-        if self._voice is not None:
-            self._voice.close()
-        self._voice = None
+        if self._status_publisher is not None:
+            self._status_publisher.close()
+        self._status_publisher = None
         while self._destructions:
             self._destructions.pop()()
 
@@ -161,7 +164,7 @@ class MonitorNode(LifecycleNode):
 
     # What comes, and what is published
 
-    def _new_voice(self):
+    def _new_status_publisher(self):
         channels = Channels(
             stop=lambda stop: self._stops.publish(Bool(data=stop)),
             verdict=lambda line: self._verdicts.publish(String(data=line)),
@@ -169,16 +172,16 @@ class MonitorNode(LifecycleNode):
             now=lambda: self.get_clock().now().nanoseconds,
         )
         given = {name: self.get_parameter(name).value for name, *_ in PARAMETERS}
-        guard = Guard(MONITOR, SETTING, given["stop_for"], given["source_timeout"])
-        return Voice(guard, channels, given["heartbeat"], self._seconds)
+        supervisor = StopSupervisor(MONITOR, SETTING, given["stop_for"], given["source_timeout"])
+        return StatusPublisher(supervisor, channels, given["heartbeat"], self._seconds)
 
     def _seconds(self):
         return self._steady.now().nanoseconds / 1e9
 
     def _subscribe(self, topic, kind, qos):
-        hear, known = self._voice.hear, singles(topic, kind)
+        on_message, known = self._status_publisher.on_message, singles(topic, kind)
         subscription = self.create_subscription(
-            kind, topic, lambda message: hear(topic, message, known), qos
+            kind, topic, lambda message: on_message(topic, message, known), qos
         )
         self._destructions.append(lambda: self.destroy_subscription(subscription))
 

@@ -38,11 +38,11 @@ pub struct Reading {
     /// A demand begins at this tick.
     pub trigger: bool,
     /// A demand is broken at this tick.
-    pub breach: bool,
+    pub violation: bool,
     /// A demand is open after it.
     pub open: bool,
     /// No later tick can break a demand.
-    pub settled: bool,
+    pub satisfied_forever: bool,
     /// The response that meets a demand came.
     pub answer: bool,
 }
@@ -54,7 +54,7 @@ pub struct Outcome {
     /// FRET's verdict on the finite run up to here.
     pub finite: Truth,
     /// A demand begins at this tick or is open after it: stop, unless it is `Some(false)`.
-    pub owed: Truth,
+    pub obligation_pending: Truth,
     pub certain: Reading,
     pub possible: Reading,
 }
@@ -63,7 +63,7 @@ impl Outcome {
     fn of(certain: Reading, possible: Reading) -> Self {
         let verdict = if certain.violated {
             Verdict::Violated
-        } else if certain.settled && !possible.violated {
+        } else if certain.satisfied_forever && !possible.violated {
             Verdict::Satisfied
         } else {
             Verdict::Pending
@@ -75,14 +75,14 @@ impl Outcome {
         } else {
             Some(true)
         };
-        let owed = if !possible.trigger && !possible.open {
+        let obligation_pending = if !possible.trigger && !possible.open {
             Some(false)
         } else if certain.trigger || certain.open {
             Some(true)
         } else {
             None
         };
-        Outcome { verdict, finite, owed, certain, possible }
+        Outcome { verdict, finite, obligation_pending, certain, possible }
     }
 }
 
@@ -132,9 +132,9 @@ impl Rail {
                 violated: false,
                 failed: self.since_1,
                 trigger: now.is_too_close,
-                breach: false,
+                violation: false,
                 open: self.since_1,
-                settled: false,
+                satisfied_forever: false,
                 answer: now.is_stopped,
             },
         ]

@@ -13,17 +13,17 @@ from monitors.kernel.readings import Reading
 from monitors.kernel.verdicts import Truth
 
 
-class Meaning(NamedTuple):
+class PropositionSpec(NamedTuple):
     """The definition of a proposition: its truth at an instant, and its aggregation at a tick."""
 
     name: str
-    signals: tuple[str, ...]
-    truth: Callable[[Mapping[str, Reading], Sequence[Truth]], Truth]
+    signals: "tuple[str, ...]"
+    truth: "Callable[[Mapping[str, Reading], Sequence[Truth]], Truth]"
     """Function of the values of its signals and of the states of its `held` parts."""
-    held: tuple[tuple[Callable[[Mapping[str, Reading], Sequence[Truth]], Truth], int], ...] = ()
+    held: "tuple[tuple[Callable[[Mapping[str, Reading], Sequence[Truth]], Truth], int], ...]" = ()
     """Parts `... for 200 ms`: a truth function, which may use the states of earlier parts, and its
     duration in nanoseconds."""
-    outer: tuple[int, ...] = ()
+    outer: "tuple[int, ...]" = ()
     """The indices of the `held` parts that `truth` uses."""
     lookback: int = 0
     """Nanoseconds of the past on which its truth depends."""
@@ -35,7 +35,7 @@ class Meaning(NamedTuple):
 class Series:
     """The samples of a signal in order of time; equal times are in order of arrival."""
 
-    def __init__(self, max_age: int | None = None) -> None:
+    def __init__(self, max_age: "int | None" = None) -> None:
         self.max_age = max_age
         self.times: list[int] = []
         self.values: list[Reading] = []
@@ -51,7 +51,7 @@ class Series:
         count = max(0, bisect_left(self.times, start) - 1)
         del self.times[:count], self.values[:count]
 
-    def next(self, done: int) -> int | None:
+    def next(self, done: int) -> "int | None":
         """The next time after `done` at which the value may change; None: never."""
         place = bisect_right(self.times, done)
         following = self.times[place] if place < len(self.times) else None
@@ -61,7 +61,7 @@ class Series:
                 return expiry
         return following
 
-    def span(self, time: int) -> tuple[int, int]:
+    def span(self, time: int) -> "tuple[int, int]":
         """The index range of the samples at a time, end excluded."""
         return bisect_left(self.times, time), bisect_right(self.times, time)
 
@@ -93,7 +93,7 @@ class _Persistence:
         self.ends[self.current] = time
         self.current = truth
 
-    def next(self, done: int) -> int | None:
+    def next(self, done: int) -> "int | None":
         over = [self.ends[each] + self.duration for each in (False, None) if each in self.ends]
         return min((time for time in over if time > done), default=None)
 
@@ -109,27 +109,29 @@ class _Persistence:
         return truth in self.ends and time < self.ends[truth] + self.duration
 
 
-class Course:
+class PropositionEvaluator:
     """Evaluates one proposition over time, step by step."""
 
-    def __init__(self, meaning: Meaning, series: Mapping[str, Series], start: int) -> None:
+    def __init__(
+        self, meaning: PropositionSpec, series: "Mapping[str, Series]", start: int
+    ) -> None:
         """Start before the first step, which is at `start`."""
         self._meaning = meaning
         self._series = {name: series[name] for name in meaning.signals}
         self._start, self._done = start, start - 1
         self._held = [_Persistence(duration) for _, duration in meaning.held]
         self._truth: Truth = None
-        self._ahead: tuple[Course, list[tuple[int, Truth]]] | None = None
+        self._ahead: tuple[PropositionEvaluator, list[tuple[int, Truth]]] | None = None
         """A copy that was evaluated ahead, and its steps; None if there is none."""
 
-    def copy(self) -> "Course":
+    def copy(self) -> "PropositionEvaluator":
         """An independent copy in the same state."""
-        other = Course(self._meaning, self._series, self._start)
+        other = PropositionEvaluator(self._meaning, self._series, self._start)
         other._done, other._truth = self._done, self._truth
         other._held = [each.copy() for each in self._held]
         return other
 
-    def steps(self, until: int) -> list[tuple[int, Truth]]:
+    def steps(self, until: int) -> "list[tuple[int, Truth]]":
         """Advance to `until`, which is included; the new steps as (time, truth)."""
         self._ahead = None
         found: list[tuple[int, Truth]] = []
@@ -139,7 +141,7 @@ class Course:
         self._done = max(self._done, until)
         return found
 
-    def sight(self, tick: int, first: tuple[int, int | None] | None = None) -> Truth:
+    def value_at_tick(self, tick: int, first: "tuple[int, int | None] | None" = None) -> Truth:
         """The truth at a tick; ticks must be given in increasing order.
 
         `first` is given for the first tick of the run: the start of the log, and the time from
@@ -156,30 +158,31 @@ class Course:
             steps = steps[told[0] if told else -1 :]
         return self._seen(steps, before)
 
-    def glance(self, ticks: Sequence[int]) -> list[Truth]:
+    def peek(self, ticks: "Sequence[int]") -> "list[Truth]":
         """The truth at later ticks if no more samples arrive, without advancing."""
         if self._ahead is None:
             self._ahead = self.copy(), []
         other, steps = self._ahead
         steps += other.steps(ticks[-1])
-        begin, before, found = 0, self._truth, list[Truth]()
+        begin, before = 0, self._truth
+        found: list[Truth] = []
         for tick in ticks:
-            end = bisect_right(steps, tick, key=_time)
+            end = bisect_left(steps, (tick + 1,))  # Less than each step of that time.
             found.append(self._seen(steps[begin:end], before))
             before = steps[end - 1][1] if end else before
             begin = end
         return found
 
-    def notice(self, time: int) -> None:
+    def invalidate_lookahead(self, time: int) -> None:
         """Discard results ahead of a new sample of one of its signals."""
         if self._ahead is not None and time <= self._ahead[0]._done:
             self._ahead = None
 
-    def _seen(self, steps: Sequence[tuple[int, Truth]], before: Truth) -> Truth:
+    def _seen(self, steps: "Sequence[tuple[int, Truth]]", before: Truth) -> Truth:
         seen = self._combined([truth for _, truth in steps], before)
         return self._meaning.on_unknown if seen is None else seen
 
-    def _combined(self, truths: Sequence[Truth], before: Truth) -> Truth:
+    def _combined(self, truths: "Sequence[Truth]", before: Truth) -> Truth:
         if not truths:
             return before
         if self._meaning.aggregate == "last":
@@ -189,14 +192,14 @@ class Course:
             return decisive
         return None if None in truths else not decisive
 
-    def _next(self) -> int | None:
+    def _next(self) -> "int | None":
         if self._done < self._start:
             return self._start
         sources: list[Series | _Persistence] = [*self._series.values(), *self._held]
         times = [source.next(self._done) for source in sources]
         return min((time for time in times if time is not None), default=None)
 
-    def _at(self, time: int) -> list[Truth]:
+    def _at(self, time: int) -> "list[Truth]":
         """The truth values at one time: of the first samples, then of the second ones, ..."""
         spans = {name: series.span(time) for name, series in self._series.items()}
         ranks = max([1, *(end - begin for begin, end in spans.values())])
@@ -209,7 +212,7 @@ class Course:
         ]
         before = [each.state for each in self._held]
         states: list[Truth] = []
-        for (truth, _), held in zip(self._meaning.held, self._held, strict=True):
+        for (truth, _), held in zip(self._meaning.held, self._held):
             for row in rows:
                 held.take(time, truth(row, states))
             held.settle(time)
@@ -221,12 +224,8 @@ class Course:
         self._truth = truths[-1]
         return truths
 
-    def _is_event(self, time: int, spans: Mapping[str, tuple[int, int]]) -> bool:
+    def _is_event(self, time: int, spans: "Mapping[str, tuple[int, int]]") -> bool:
         return any(
             begin < end or series.next(time - 1) == time
-            for (begin, end), series in zip(spans.values(), self._series.values(), strict=True)
+            for (begin, end), series in zip(spans.values(), self._series.values())
         )
-
-
-def _time(step: tuple[int, Truth]) -> int:
-    return step[0]

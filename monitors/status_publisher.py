@@ -10,43 +10,43 @@ from collections.abc import Callable, Collection, Sequence
 from threading import Lock
 from typing import Any, NamedTuple
 
-from monitors.guard import Guard, Status, bounded
+from monitors.stop_supervisor import Status, StopSupervisor, bounded
 
 
 class Channels(NamedTuple):
     """The publishers and the clock of a node."""
 
-    stop: Callable[[bool], object]
-    verdict: Callable[[str], object]
+    stop: "Callable[[bool], object]"
+    verdict: "Callable[[str], object]"
     """Publishes a line of JSON."""
-    statuses: Callable[[Sequence[Status]], object]
-    now: Callable[[], int]
+    statuses: "Callable[[Sequence[Status]], object]"
+    now: "Callable[[], int]"
     """Nanoseconds on the middleware's clock, which may be simulated; 0 before it has started."""
 
 
-class Voice:
-    """Passes messages to a guard, and publishes the results."""
+class StatusPublisher:
+    """Passes messages to a supervisor, and publishes the results."""
 
     def __init__(
         self,
-        guard: Guard,
+        supervisor: StopSupervisor,
         channels: Channels,
         heartbeat: float,
-        steady: Callable[[], float] = time.monotonic,
+        steady: "Callable[[], float]" = time.monotonic,
     ) -> None:
         """Start before anything is published.
 
         Args:
-            guard: the guard; nothing else may use it.
+            supervisor: the supervisor; nothing else may use it.
             channels: the publishers; they are never called concurrently, but from any thread.
-            heartbeat: seconds between two calls of `beat`.
+            heartbeat: seconds between two calls of `on_heartbeat`.
             steady: a monotonic clock in seconds.
 
         Raises:
             ValueError: the heartbeat is out of range.
         """
         self.heartbeat = bounded("heartbeat", heartbeat, SHORTEST, LONGEST_BEAT)
-        self._guard, self._channels, self._steady = guard, channels, steady
+        self._supervisor, self._channels, self._steady = supervisor, channels, steady
         self._stop: bool | None = None
         self._ticks = 0
         self._reported = float("-inf")
@@ -54,28 +54,28 @@ class Voice:
         self._closed = False
         self._lock = Lock()
 
-    def hear(self, topic: str, message: Any, singles: Collection[str] = ()) -> None:
-        """Process a message; after an exception the robot stops, and the next `beat` raises it."""
+    def on_message(self, topic: str, message: Any, singles: "Collection[str]" = ()) -> None:
+        """Process a message; an exception stops the robot, and `on_heartbeat` raises it again."""
         with self._lock:
             try:
                 now = self._channels.now()
                 if now:  # 0: the simulated clock has not started
-                    self._guard.arrive(topic, message, now, self._steady(), singles)
+                    self._supervisor.arrive(topic, message, now, self._steady(), singles)
             except Exception as error:
                 self._failure = error
-            self._speak(again=False)
+            self._publish(again=False)
 
-    def beat(self) -> None:
+    def on_heartbeat(self) -> None:
         """Publish everything; to be called once per heartbeat.
 
         Raises:
-            Exception: an exception of `hear` since the last call.
+            Exception: an exception of `on_message` since the last call.
         """
         with self._lock:
             now = self._channels.now()
             if now and self._failure is None:
-                self._guard.pass_to(now)
-            self._speak(again=True)
+                self._supervisor.pass_to(now)
+            self._publish(again=True)
             if self._failure is not None:
                 raise self._failure
             if self._steady() - self._reported >= REPORT:
@@ -88,21 +88,21 @@ class Voice:
                 self._channels.stop(True)
                 self._closed = True
 
-    def _speak(self, *, again: bool) -> None:
+    def _publish(self, *, again: bool) -> None:
         if self._closed:
             return
-        stop = self._failure is not None or self._guard.stop(self._steady())
+        stop = self._failure is not None or self._supervisor.stop(self._steady())
         if again or stop is not self._stop:
             self._stop = stop
             self._channels.stop(stop)
-        if again or self._guard.ticks != self._ticks:
-            self._ticks = self._guard.ticks
-            for line in self._guard.news():
+        if again or self._supervisor.ticks != self._ticks:
+            self._ticks = self._supervisor.ticks
+            for line in self._supervisor.news():
                 self._channels.verdict(json.dumps(line))
 
     def _report(self) -> None:
         self._reported = self._steady()
-        self._channels.statuses(self._guard.statuses(self._reported))
+        self._channels.statuses(self._supervisor.statuses(self._reported))
 
 
 SHORTEST, LONGEST_BEAT = 0.001, 10.0

@@ -7,12 +7,12 @@ from typing import Any
 
 import pytest
 
-from monitors.guard import Status
-from monitors.voice import Channels, Voice
+from monitors.status_publisher import Channels, StatusPublisher
+from monitors.stop_supervisor import Status
 
 
 class Wanted:
-    """Stands for a guard: it says what the test wants."""
+    """Stands for a supervisor: it says what the test wants."""
 
     def __init__(self) -> None:
         self.stops, self.ticks, self.failure = False, 0, ""
@@ -47,85 +47,85 @@ class Said:
     def report(self, statuses: object) -> None:
         self.reports += 1
 
-    def voice(self, guard: Wanted, heartbeat: float = 0.1) -> Voice:
+    def publisher(self, supervisor: Wanted, heartbeat: float = 0.1) -> StatusPublisher:
         channels = Channels(self.stops.append, self.lines.append, self.report, lambda: self.now)
-        return Voice(guard, channels, heartbeat, lambda: self.steady)  # type: ignore[arg-type]
+        return StatusPublisher(supervisor, channels, heartbeat, lambda: self.steady)  # type: ignore[arg-type]
 
 
 def test_a_stop_is_said_at_once_and_again_with_each_heartbeat() -> None:
-    guard, said = Wanted(), Said()
-    voice = said.voice(guard)
-    voice.hear("/x", 1)
-    voice.hear("/x", 2)
+    supervisor, said = Wanted(), Said()
+    publisher = said.publisher(supervisor)
+    publisher.on_message("/x", 1)
+    publisher.on_message("/x", 2)
     assert said.stops == [False]
-    guard.stops = True
-    voice.hear("/x", 3)
-    voice.hear("/x", 4)
+    supervisor.stops = True
+    publisher.on_message("/x", 3)
+    publisher.on_message("/x", 4)
     assert said.stops == [False, True]
-    voice.beat()
+    publisher.on_heartbeat()
     assert said.stops == [False, True, True]
-    voice.close()
-    voice.beat()
-    voice.close()
+    publisher.close()
+    publisher.on_heartbeat()
+    publisher.close()
     assert said.stops == [False, True, True, True]
 
 
 def test_it_stops_at_the_end_whatever_it_said() -> None:
     said = Said()
-    voice = said.voice(Wanted())
-    voice.beat()
-    voice.close()
+    publisher = said.publisher(Wanted())
+    publisher.on_heartbeat()
+    publisher.close()
     assert said.stops == [False, True]
 
 
 def test_verdicts_come_with_each_tick_and_each_heartbeat() -> None:
-    guard, said = Wanted(), Said()
-    voice = said.voice(guard)
-    voice.hear("/x", 1)
+    supervisor, said = Wanted(), Said()
+    publisher = said.publisher(supervisor)
+    publisher.on_message("/x", 1)
     assert said.lines == []
-    guard.ticks = 1
-    voice.hear("/x", 1)
-    voice.hear("/x", 1)
-    voice.beat()
+    supervisor.ticks = 1
+    publisher.on_message("/x", 1)
+    publisher.on_message("/x", 1)
+    publisher.on_heartbeat()
     assert list(map(json.loads, said.lines)) == [{"tick": 1}] * 2
 
 
 def test_nothing_is_taken_before_the_clock_has_begun() -> None:
-    guard, said = Wanted(), Said()
+    supervisor, said = Wanted(), Said()
     said.now = 0
-    voice = said.voice(guard)
-    voice.hear("/x", 1)
-    voice.beat()
-    assert guard.came == []
+    publisher = said.publisher(supervisor)
+    publisher.on_message("/x", 1)
+    publisher.on_heartbeat()
+    assert supervisor.came == []
     said.now = 7
-    voice.hear("/x", 1, ("x",))
-    voice.beat()
-    assert guard.came == [("/x", 1, 7, 0.0, ("x",)), (7,)]
+    publisher.on_message("/x", 1, ("x",))
+    publisher.on_heartbeat()
+    assert supervisor.came == [("/x", 1, 7, 0.0, ("x",)), (7,)]
 
 
 def test_diagnostics_come_now_and_then() -> None:
     said = Said()
-    voice = said.voice(Wanted())
+    publisher = said.publisher(Wanted())
     for said.steady in (0.0, 0.1, 0.4, 0.5, 0.6, 1.1):
-        voice.beat()
+        publisher.on_heartbeat()
     assert said.reports == 3
 
 
 def test_a_failure_stops_the_robot_and_ends_the_node() -> None:
-    guard, said = Wanted(), Said()
-    voice = said.voice(guard)
-    voice.hear("/x", 1)
-    guard.failure = "out of order"
-    voice.hear("/x", 1)
-    guard.failure = ""
-    voice.hear("/x", 1)
+    supervisor, said = Wanted(), Said()
+    publisher = said.publisher(supervisor)
+    publisher.on_message("/x", 1)
+    supervisor.failure = "out of order"
+    publisher.on_message("/x", 1)
+    supervisor.failure = ""
+    publisher.on_message("/x", 1)
     assert said.stops == [False, True]
     with pytest.raises(RuntimeError, match="out of order"):
-        voice.beat()
+        publisher.on_heartbeat()
     assert said.stops == [False, True, True]
 
 
 @pytest.mark.parametrize("heartbeat", [0.0, -1.0, 11.0, float("nan"), "0.1", True])
 def test_a_heartbeat_that_is_no_time_is_refused(heartbeat: Any) -> None:
     with pytest.raises(ValueError, match=r"heartbeat is from 0.001 to 10 s, not"):
-        Said().voice(Wanted(), heartbeat)
+        Said().publisher(Wanted(), heartbeat)

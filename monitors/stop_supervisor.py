@@ -16,8 +16,8 @@ import re
 from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from monitors.kernel.verdicts import Truth
-from monitors.perception import Judging, Setting
+from monitors.kernel.verdicts import Truth, same_length
+from monitors.perception import BindingConfig, OnlineEvaluator
 
 OK, WARN, ERROR, STALE = range(4)
 """The levels of diagnostic_msgs/DiagnosticStatus."""
@@ -29,15 +29,15 @@ class State(NamedTuple):
     requirement: str
     verdict: str
     """The verdict if the run ended now."""
-    owed: Truth
+    obligation_pending: Truth
     """Whether an obligation is open; None: unknown."""
-    triggered_ns: int | None
+    triggered_ns: "int | None"
     """The last tick that has certainly triggered the requirement."""
-    open_ns: int | None
+    open_ns: "int | None"
     """The trigger of the obligation that is certainly open."""
-    deadline_ns: int | None
+    deadline_ns: "int | None"
     """The last tick at which this obligation can be met."""
-    violated_ns: int | None
+    violated_ns: "int | None"
     """The first tick at which the requirement was certainly violated."""
 
 
@@ -47,17 +47,17 @@ class Status(NamedTuple):
     level: int
     name: str
     message: str
-    values: tuple[tuple[str, str], ...]
+    values: "tuple[tuple[str, str], ...]"
 
 
-class Guard:
+class StopSupervisor:
     """Supervises one monitor and its topics, and decides whether the robot must stop."""
 
     def __init__(
         self,
-        monitor: Callable[[], Any],
-        setting: Setting,
-        deciding: Collection[str] = (),
+        monitor: "Callable[[], Any]",
+        setting: BindingConfig,
+        deciding: "Collection[str]" = (),
         source_timeout: float = 0.0,
     ) -> None:
         """Start before the first message.
@@ -78,7 +78,7 @@ class Guard:
         if unknown:
             raise ValueError(f"unknown requirement {unknown[0]}: there are {', '.join(self._ids)}")
         bounded("source_timeout", source_timeout, 0.0, LONGEST)
-        self._judging = Judging(monitor, setting)
+        self._evaluator = OnlineEvaluator(monitor, setting)
         self._setting, self._timeout = setting, source_timeout
         self._deciding = [i for i, id in enumerate(self._ids) if not deciding or id in deciding]
         self._needed = [
@@ -92,7 +92,7 @@ class Guard:
         self._counts = dict.fromkeys(setting.topics, 0)
         self._unreadable: dict[str, str] = {}
         """Topic whose last message could not be read -> the reason."""
-        self._owed: tuple[Truth, ...] = (None,) * len(self._ids)
+        self._obligation_pending: tuple[Truth, ...] = (None,) * len(self._ids)
         self._violated: set[str] = set()
         """The requirements that were violated in earlier runs."""
         self._now = 0
@@ -101,14 +101,14 @@ class Guard:
     # Input
 
     def arrive(
-        self, topic: str, message: Any, now: int, steady: float, singles: Collection[str] = ()
+        self, topic: str, message: Any, now: int, steady: float, singles: "Collection[str]" = ()
     ) -> None:
         """Process a message with fields as attributes; `singles` is from `single_signals`."""
         time = stamp(message) if self._setting.stamped else None
         time = now if time is None else time
         self._counts[topic] += 1
         try:
-            self._judge(lambda: self._judging.arrive(topic, time, now, message, singles), now)
+            self._judge(lambda: self._evaluator.arrive(topic, time, now, message, singles), now)
         except (AttributeError, TypeError, ValueError) as error:
             self._unreadable[topic] = f"{type(error).__name__}: {error}"
         else:
@@ -117,31 +117,31 @@ class Guard:
 
     def pass_to(self, now: int) -> None:
         """Advance to `now`: all messages received earlier have been processed."""
-        self._judge(lambda: self._judging.pass_to(now), now)
+        self._judge(lambda: self._evaluator.pass_to(now), now)
 
-    def _judge(self, step: Callable[[], None], now: int) -> None:
+    def _judge(self, step: "Callable[[], None]", now: int) -> None:
         """Run a step; keep the violations if it begins a new run."""
-        monitor, resets = self._judging.monitor, self._judging.resets
+        monitor, resets = self._evaluator.monitor, self._evaluator.resets
         try:
             step()
         finally:
-            if self._judging.resets != resets:
+            if self._evaluator.resets != resets:
                 standings = monitor.standings()
                 self._violated |= {s.requirement for s in standings if s.verdict == "violated"}
             self._now = now
-            self._owed = self._judging.owed()
+            self._obligation_pending = self._evaluator.obligation_pending()
 
     # Output
 
     @property
     def ticks(self) -> int:
         """The number of ticks evaluated in the present run."""
-        return len(self._judging.ledger)
+        return len(self._evaluator.ledger)
 
     def stop(self, steady: float) -> bool:
         """Whether the robot must stop now."""
-        owed = any(self._owed[i] is not False for i in self._deciding)
-        return owed or any(self.fault(topic, steady) for topic in self._needed)
+        pending = any(self._obligation_pending[i] is not False for i in self._deciding)
+        return pending or any(self.fault(topic, steady) for topic in self._needed)
 
     def fault(self, topic: str, steady: float) -> str:
         """The reason why a topic is unreliable; empty if it is reliable."""
@@ -154,24 +154,24 @@ class Guard:
             return f"{topic} is silent for {silence:.1f} s"
         return ""
 
-    def states(self) -> tuple[State, ...]:
-        """The status of each requirement; `owed` includes the messages since the last tick."""
-        monitor = self._judging.monitor
-        read = zip(monitor.standings(), self._owed, monitor.must.marks(), strict=True)
+    def states(self) -> "tuple[State, ...]":
+        """The status of each requirement; `obligation_pending` counts messages since the tick."""
+        monitor = self._evaluator.monitor
+        read = zip(monitor.standings(), self._obligation_pending, monitor.must.marks())
         return tuple(
             State(
                 standing.requirement,
                 str(standing.verdict),
-                owed,
+                pending,
                 self._time(mark.last if mark.last >= 0 else None),
                 self._time(standing.open),
                 self._time(standing.deadline),
                 self._time(standing.first_violation),
             )
-            for standing, owed, mark in read
+            for standing, pending, mark in read
         )
 
-    def news(self) -> list[dict[str, Any]]:
+    def news(self) -> "list[dict[str, Any]]":
         """The requirements whose status changed since the last call, as lines of a watch."""
         before, self._states = self._states, self.states()
         return [
@@ -180,33 +180,36 @@ class Guard:
             if state not in before
         ]
 
-    def _time(self, tick: int | None) -> int | None:
-        origin = self._judging.perception.origin
+    def _time(self, tick: "int | None") -> "int | None":
+        origin = self._evaluator.perception.origin
         if tick is None or origin is None:
             return None
         return origin + self._setting.phase + tick * self._setting.period
 
-    def statuses(self, steady: float) -> list[Status]:
+    def statuses(self, steady: float) -> "list[Status]":
         """A status of the sources, and one of each requirement."""
         faults = {topic: self.fault(topic, steady) for topic in self._setting.topics}
         wrong = [fault for fault in faults.values() if fault]
-        judging = self._judging
+        evaluator = self._evaluator
         values = {f"messages of {topic}": count for topic, count in self._counts.items()}
-        values |= {
-            "ticks": self.ticks,
-            "ticks that became unknown": judging.ledger.late,
-            "clock was set": judging.resets,
-        }
+        values.update(
+            {
+                "ticks": self.ticks,
+                "ticks that became unknown": evaluator.ledger.late,
+                "clock was set": evaluator.resets,
+            }
+        )
         sources = status(STALE if wrong else OK, "sources", "; ".join(wrong) or "all come", values)
         own = [
             [faults[each] for each in topics if faults[each]] for _, topics in self._setting.reads
         ]
-        read = zip(self.states(), own, strict=True)
+        states = self.states()
+        same_length(states, own)
         return [
             sources,
             *(
                 status_of(state, "".join(some[:1]), violated=state.requirement in self._violated)
-                for state, some in read
+                for state, some in zip(states, own)
             ),
         ]
 
@@ -224,17 +227,19 @@ def status_of(state: State, fault: str, *, violated: bool = False) -> Status:
         level, message = ERROR, "violated"
     elif fault:
         level, message = STALE, fault
-    elif state.owed is not False:
+    elif state.obligation_pending is not False:
         level, message = (
             WARN,
-            "an obligation is open" if state.owed else "unknown whether an obligation is open",
+            "an obligation is open"
+            if state.obligation_pending
+            else "unknown whether an obligation is open",
         )
     else:
         level, message = OK, "no obligation is open"
     return status(level, state.requirement, message, values)
 
 
-def status(level: int, name: str, message: str, values: Mapping[str, object]) -> Status:
+def status(level: int, name: str, message: str, values: "Mapping[str, object]") -> Status:
     """A status with its values converted to texts."""
     return Status(level, name, message, tuple((key, str(value)) for key, value in values.items()))
 
@@ -258,7 +263,7 @@ def bounded(name: str, value: float, least: float, most: float) -> float:
 # Messages of ROS 1 and ROS 2 ----------------------------------------------------------------------
 
 
-def stamp(message: Any) -> int | None:
+def stamp(message: Any) -> "int | None":
     """`header.stamp` in nanoseconds, in ROS 2 and in ROS 1; None for a message without one."""
     time = getattr(getattr(message, "header", None), "stamp", None)
     for seconds, nanoseconds in (("sec", "nanosec"), ("secs", "nsecs")):
@@ -268,8 +273,8 @@ def stamp(message: Any) -> int | None:
 
 
 def single_signals(
-    setting: Setting, topic: str, message: Any, types: Callable[[Any], Mapping[str, str]]
-) -> tuple[str, ...]:
+    setting: BindingConfig, topic: str, message: Any, types: "Callable[[Any], Mapping[str, str]]"
+) -> "tuple[str, ...]":
     """The signals of a topic that are read from 32-bit floats.
 
     Args:
@@ -295,7 +300,7 @@ _SINGLE = re.compile(r"(sequence<)?float(32)?(?!\w)")
 
 
 def _type(
-    message: Any, fields: Sequence[str], topic: str, types: Callable[[Any], Mapping[str, str]]
+    message: Any, fields: "Sequence[str]", topic: str, types: "Callable[[Any], Mapping[str, str]]"
 ) -> str:
     name = type(message).__name__
     for place, field in enumerate(fields):

@@ -1,5 +1,5 @@
 """A node's core: the robot stands unless everything is known, readable and recent, and nothing is
-owed."""
+pending."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 
 from compiler.project.folder import load
 from compiler.targets.python import monitor, perception
-from monitors.guard import ERROR, OK, STALE, WARN, Guard, single_signals, stamp
 from monitors.loading import executed
-from monitors.perception import Judging
+from monitors.perception import OnlineEvaluator
+from monitors.stop_supervisor import ERROR, OK, STALE, WARN, StopSupervisor, single_signals, stamp
 from tests.json_schemas import validate
 
 MS = 10**6
@@ -55,11 +55,13 @@ def emitted(tmp_path_factory: pytest.TempPathFactory) -> tuple[Any, Any]:
 
 
 class Run:
-    """A guard, to which messages come every 10 ms."""
+    """A supervisor, to which messages come every 10 ms."""
 
     def __init__(self, emitted: tuple[Any, Any], *deciding: str, timeout: float = 0.5) -> None:
         monitors, live = emitted
-        self.guard: Guard = live.Guard(monitors.MONITOR, live.SETTING, deciding, timeout)
+        self.supervisor: StopSupervisor = live.StopSupervisor(
+            monitors.MONITOR, live.SETTING, deciding, timeout
+        )
         self.now = 5 * 10**9
 
     @property
@@ -69,24 +71,24 @@ class Run:
     def x(self, value: object) -> None:
         self.now += 10 * MS
         message = SimpleNamespace(data=value)
-        self.guard.arrive("/x", message, self.now, self.steady)
+        self.supervisor.arrive("/x", message, self.now, self.steady)
 
     def y(self, value: object) -> None:
         self.now += 10 * MS
         message = SimpleNamespace(a=SimpleNamespace(data=value))
-        self.guard.arrive("/y", message, self.now, self.steady)
+        self.supervisor.arrive("/y", message, self.now, self.steady)
 
     def idle(self, milliseconds: int) -> None:
         for _ in range(milliseconds // 10):
             self.now += 10 * MS
-            self.guard.pass_to(self.now)
+            self.supervisor.pass_to(self.now)
 
     @property
     def stop(self) -> bool:
-        return self.guard.stop(self.steady)
+        return self.supervisor.stop(self.steady)
 
     def levels(self) -> dict[str, int]:
-        return {each.name: each.level for each in self.guard.statuses(self.steady)}
+        return {each.name: each.level for each in self.supervisor.statuses(self.steady)}
 
 
 def test_the_robot_stands_until_each_topic_that_decides_has_begun(emitted: Any) -> None:
@@ -165,8 +167,8 @@ def test_news_are_lines_of_a_watch(emitted: Any) -> None:
         run.x(x)
         run.y(y)
         run.idle(100)
-        found += run.guard.news()
-    assert run.guard.news() == []
+        found += run.supervisor.news()
+    assert run.supervisor.news() == []
     for line in found:
         validate("watch.schema.json", line)
     last = {line["requirement"]: line for line in found}
@@ -181,9 +183,9 @@ def test_news_are_lines_of_a_watch(emitted: Any) -> None:
 def test_it_stops_unless_owed_is_false_and_all_is_there(
     emitted: Any, steps: list[tuple[str, Any]]
 ) -> None:
-    """By the demand of `Judging`, and by what came last of each topic."""
+    """By the demand of `OnlineEvaluator`, and by what came last of each topic."""
     monitors, live = emitted
-    run, judging = Run(emitted), live.Judging(monitors.MONITOR, live.SETTING)
+    run, judging = Run(emitted), live.OnlineEvaluator(monitors.MONITOR, live.SETTING)
     heard: dict[str, float] = {}
     broken: set[str] = set()
     for kind, value in steps:
@@ -202,8 +204,8 @@ def test_it_stops_unless_owed_is_false_and_all_is_there(
                 broken.discard(kind)
                 heard[kind] = run.steady
         silent = len(heard) < 2 or run.steady - heard["x"] > 0.5
-        owed = any(each is not False for each in judging.owed())
-        assert run.stop == bool(silent or broken or owed)
+        pending = any(each is not False for each in judging.obligation_pending())
+        assert run.stop == bool(silent or broken or pending)
 
 
 def test_parameters_are_checked(emitted: Any) -> None:
@@ -247,7 +249,7 @@ def test_stamps_of_both_middlewares_are_read() -> None:
 
 def test_the_ticks_before_a_jump_are_judged(emitted: Any) -> None:
     monitors, live = emitted
-    judging: Judging = live.Judging(monitors.MONITOR, live.SETTING)
+    judging: OnlineEvaluator = live.OnlineEvaluator(monitors.MONITOR, live.SETTING)
     for name in ("/x", "/y"):
         message = SimpleNamespace(data=3.0, a=SimpleNamespace(data=3.0))
         judging.arrive(name, 5 * 10**9, 5 * 10**9, message)
