@@ -6,7 +6,6 @@ is finished is in the store (`unfinished.json`), and the next audit takes it ove
 
 from __future__ import annotations
 
-import fcntl
 import os
 import time
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
@@ -54,6 +53,7 @@ from fretc.audit.store.writer import (
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
+from fretish.system.files import FolderLock
 
 _HEAVY = 2_000
 """Events of a log from which on its results become columns at once, without waiting for the other
@@ -281,12 +281,11 @@ class StoreWriter:
         destination(folder / FILE)
         self._new_folder = None if folder.parent.exists() else folder.parent
         folder.mkdir(parents=True, exist_ok=True)
-        self._lock = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+        self._lock = FolderLock(folder)
         try:
-            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
             self.earlier = ReusableResults(folder, plan, key, rehash=rehash)
         except BaseException:
-            os.close(self._lock)
+            self._lock.release()
             raise
         self._before = files(folder)
         """Files that existed before: an earlier manifest that is damaged may need them."""
@@ -324,7 +323,7 @@ class StoreWriter:
                 others = set() if self._is_finished else self._before
                 remove_others(self.folder, *filter(None, manifests), kept=others)
         finally:
-            os.close(self._lock)
+            self._lock.release()
 
     def run(self, engine: Engine, tell: Callable[[str], None]) -> StoredAudit | Diagnostic:
         """Audit the logs without reusable results, and write all results.
