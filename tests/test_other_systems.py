@@ -5,9 +5,12 @@ import os
 import shutil
 import subprocess
 import sys
+from contextlib import chdir
 from pathlib import Path
 
 import pytest
+
+from tests.command import Fretc
 
 ROOT = Path(__file__).parent.parent
 LOG = "traces/mission-seed15.mcap"
@@ -88,6 +91,7 @@ def test_every_command_of_the_readme_works(tmp_path: Path) -> None:
     assert [proof["result"] for proof in proofs["evidence"]] == ["proved"]
 
 
+WORDS = ("test", "requirements/r1.fret", "-o", "-")
 CALLS = """
 from fretc.verification.engines.sandbox import CallLimits, confined
 from tests.test_other_systems import double, endless, growing
@@ -98,6 +102,37 @@ if __name__ == "__main__":
     print(confined(limits, growing).reason)
     print(confined(limits, double, 21))
 """
+
+
+@pytest.mark.slow
+def test_files_with_line_ends_of_windows_mean_the_same(fretc: Fretc, tmp_path: Path) -> None:
+    said = []
+    for name in ("lf", "crlf"):
+        folder = tmp_path / name / "requirements"
+        shutil.copytree(ROOT / "requirements", folder)
+        for path in folder.rglob("*") if name == "crlf" else ():
+            if path.is_file():
+                path.write_bytes(path.read_bytes().replace(b"\n", b"\r\n"))
+        with chdir(tmp_path / name):
+            check = fretc("check", "--requirements", "requirements/agv")
+            agv = fretc("requirements/agv", "--format", "json")
+            said.append((check, agv, fretc("requirements/r1.fret")))
+    assert said[0] == said[1]
+
+
+@pytest.mark.slow
+def test_an_output_does_not_depend_on_the_order_of_hashes() -> None:
+    found = set()
+    for seed in ("5", "7"):
+        done = subprocess.run(
+            [sys.executable, "-c", "from fretc.start import main; main()", *WORDS],
+            cwd=ROOT,
+            env={**os.environ, "PYTHONHASHSEED": seed},
+            capture_output=True,
+            check=True,
+        )
+        found.add(done.stdout)
+    assert len(found) == 1
 
 
 @pytest.mark.slow

@@ -163,7 +163,7 @@ class Propositions:
         """Variables whose atoms order alone cannot separate."""
         readers: defaultdict[str, list[str]] = defaultdict(list)
         for name, read in self._read.items():
-            for each in read:
+            for each in sorted(read):  # the first doubt is the one that is shown
                 readers[each].append(name)
         glossary = {
             name: each
