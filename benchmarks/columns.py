@@ -213,7 +213,9 @@ def peak(path: str, what: str) -> float:
 def _most() -> float:
     """MB of memory that this process has had at most; that of its parent does not count."""
     (line,) = (
-        line for line in Path("/proc/self/status").read_text().splitlines() if "VmHWM" in line
+        line
+        for line in Path("/proc/self/status").read_text(encoding="utf-8").splitlines()
+        if "VmHWM" in line
     )
     return int(line.split()[1]) / 1024
 

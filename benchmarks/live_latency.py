@@ -91,7 +91,9 @@ def package(folder: Path, kind: str, count: int, time: str) -> Path:
 
 def seconds(process: subprocess.Popen[str]) -> float:
     """Of CPU time that it has taken."""
-    fields = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()
+    fields = (
+        Path(f"/proc/{process.pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
+    )
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 

@@ -39,7 +39,10 @@ def requirements(folder: Path, time_: str) -> Iterator[Path]:
         for file in filter(Path.is_file, folder.glob("*")):
             shutil.copy(file, name)
         bindings = Path(name, "bindings.toml")
-        bindings.write_text(bindings.read_text().replace('time = "log_time"', time_, 1))
+        bindings.write_text(
+            bindings.read_text(encoding="utf-8").replace('time = "log_time"', time_, 1),
+            encoding="utf-8",
+        )
         yield Path(name)
 
 

@@ -30,6 +30,7 @@ from fretc.terminal.output import (
     print_diagnostics,
     print_status,
 )
+from fretc.terminal.screen import IN_ASCII
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.reading.limits import ExceededError, exceeded
@@ -174,7 +175,7 @@ def _prepare() -> None:
         if stream is None:
             setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115
         elif hasattr(stream, "reconfigure"):
-            stream.reconfigure(errors="backslashreplace")
+            stream.reconfigure(errors=IN_ASCII)
     if threading.current_thread() is threading.main_thread():
         signal.signal(signal.SIGTERM, signal.default_int_handler)
 

@@ -187,4 +187,4 @@ def recording(
 
 def _private(path: str, flags: int) -> int:
     """Open a new file that nobody else reads before it is complete."""
-    return os.open(path, flags | os.O_NOFOLLOW, 0o600)
+    return os.open(path, flags | getattr(os, "O_NOFOLLOW", 0), 0o600)

@@ -101,6 +101,8 @@ class Program:
 
     path: Path
     sources: tuple[Source, ...]
+    launcher: tuple[str, ...] = ()
+    """What runs a program for another processor."""
 
     def run(self, *traces: tuple[int, Rows]) -> tuple[list[int], list[list[list[Outcome]]]]:
         """The bytes of state of each monitor, and of each trace all outcomes at each tick.
@@ -113,7 +115,9 @@ class Program:
             + bytes(_TRUTHS.index(value) for row in rows for value in row)
             for place, rows in traces
         )
-        done = subprocess.run([self.path], input=data, capture_output=True, check=False)
+        done = subprocess.run(
+            [*self.launcher, self.path], input=data, capture_output=True, check=False
+        )
         assert (done.returncode, done.stderr) == (0, b""), done.stderr.decode()
         head = struct.Struct(f"={len(self.sources)}I")
         readings = struct.iter_unpack("=i7?i7?BBB", done.stdout[head.size :])
@@ -132,7 +136,11 @@ class Program:
 
 
 def compiled(
-    folder: Path, cc: str, *sources: Source, flags: Sequence[str] = (*STRICT, *CHECKED)
+    folder: Path,
+    cc: str,
+    *sources: Source,
+    flags: Sequence[str] = (*STRICT, *CHECKED),
+    launcher: tuple[str, ...] = (),
 ) -> Program:
     """Of all monitors, each with a base of its own."""
     files = write(folder, *sources)
@@ -140,7 +148,7 @@ def compiled(
     main.write_text(_main(sources), encoding="utf-8")
     path = folder / "main"
     subprocess.run([installed(cc), *flags, "-o", path, main, *files], check=True)
-    return Program(path, sources)
+    return Program(path, sources, launcher)
 
 
 def _main(sources: Sequence[Source]) -> str:

@@ -21,9 +21,11 @@ from typing import Any
 import pytest
 
 PROGRAMS = {
+    "aarch64-linux-gnu-gcc": "apt-get install gcc-aarch64-linux-gnu",
     "ament_flake8": "apt-get install python3-ament-flake8",
     "ament_pep257": "apt-get install python3-ament-pep257",
     "ament_xmllint": "apt-get install python3-ament-xmllint",
+    "arm-linux-gnueabihf-gcc": "apt-get install gcc-arm-linux-gnueabihf",
     "cargo": "apt-get install cargo",
     "cargo-clippy": "apt-get install rust-clippy",
     "cc": "apt-get install gcc",
@@ -46,6 +48,8 @@ PROGRAMS = {
     "node": "apt-get install nodejs",
     "npm": "apt-get install npm",
     "rosbag": "apt-get install python3-rosbag",
+    "qemu-aarch64-static": "apt-get install qemu-user-static",
+    "qemu-arm-static": "apt-get install qemu-user-static",
     "roslaunch": "apt-get install python3-roslaunch",
     "rustc": "apt-get install rustc",
     "ssh-keygen": "apt-get install openssh-client",

@@ -15,7 +15,7 @@ from tests.each import each
 ROOT = Path(__file__).parent.parent
 ORDER = """
 monitors.kernel  monitors
-fretish.diagnostics  fretish.reading  fretish.error_rules  fretish  fretish.bindings
+fretish.system  fretish.diagnostics  fretish.reading  fretish.error_rules  fretish  fretish.bindings
 fretish.bindings.tables
 compiler.files  compiler.logic.diagrams  compiler.logic.ordering  compiler.logic.spelling
 compiler.logic  compiler.formalization  compiler.formalization.numbers
@@ -132,6 +132,11 @@ DOORS = {
     "websockets": {"fretc/watch/sources/foxglove.py"},
     "foxglove": {"fretc/watch/publishing/foxglove_server.py"},
     "click": CLICK,
+    # Only Linux and macOS have these, or only Windows.
+    "fcntl": {"compiler/targets/ajpf/runner.py", "fretish/system/files.py"},
+    "resource": {"fretish/system/resources.py"},
+    "msvcrt": {"fretish/system/files.py"},
+    **{key: set[str]() for key in ("grp", "pty", "pwd", "termios", "tty")},
 }
 """Each library, and the modules that import it."""
 MOST = 16

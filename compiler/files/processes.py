@@ -1,16 +1,12 @@
-"""Child processes: their import path, their signals, and their replies."""
+"""Child processes: their import path and their replies."""
 
 from __future__ import annotations
 
 import os
 import pickle
-import signal
 import traceback
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from typing import Any
-
-_STOPS = (signal.SIGINT, signal.SIGTERM)
 
 
 def isolate_imports() -> None:
@@ -21,27 +17,6 @@ def isolate_imports() -> None:
     because every program in between passes it on, unlike options such as `-P`.
     """
     os.environ["PYTHONSAFEPATH"] = "1"
-
-
-@contextmanager
-def stops_blocked() -> Iterator[None]:
-    """Block stop signals for a child that starts in this context, until it ignores them.
-
-    Without this, a child prints a traceback for a Ctrl-C that comes while it imports.
-    `ignore_interrupts` ends the block in the child.
-    """
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, _STOPS)
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-def ignore_interrupts() -> None:
-    """Ignore Ctrl-C in a child: the parent receives it, too, and ends the child by SIGTERM."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, _STOPS)
 
 
 def reply(function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> tuple[bool, Any]:

@@ -17,6 +17,7 @@ from typing import BinaryIO, Literal
 from fretish.diagnostics.diagnostic import Diagnostic, suggestion
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
+from fretish.system.files import NO_WAIT, TO_CREATE, TO_READ, replace, set_permissions
 
 MOST = 2**30
 """Maximum size in bytes of a file that is read at once."""
@@ -66,8 +67,7 @@ def open_regular(path: str | Path) -> BinaryIO:
         OSError: the file cannot be opened, or is not a regular file.
     """
     own = str(path).startswith("/dev/")
-    flags = os.O_RDONLY | os.O_CLOEXEC | os.O_NOCTTY
-    descriptor = os.open(path, flags if own else flags | os.O_NONBLOCK)
+    descriptor = os.open(path, TO_READ if own else TO_READ | NO_WAIT)
     mode = os.fstat(descriptor).st_mode
     if stat.S_ISREG(mode) or (own and not stat.S_ISDIR(mode)):
         return os.fdopen(descriptor, "rb")
@@ -120,7 +120,7 @@ def write(files: Mapping[Path, str | bytes | Iterable[str]]) -> Diagnostic | Non
             waiting.append((temporary, real))
             _fill(temporary, content, like=real)
         for temporary, path in waiting:
-            temporary.replace(path)
+            replace(temporary, path)
     except OSError as error:
         return diagnostic("file_not_written", path=path, reason=error.strerror or error)
     finally:
@@ -138,12 +138,12 @@ def _fill(temporary: Path, content: str | bytes | Iterable[str], *, like: Path) 
     mode = stat.S_IMODE(like.stat().st_mode) if like.exists() else _default_permissions()
     if data.startswith(b"#!"):
         mode |= (mode & _READABLE) >> 2
-    descriptor = os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_WRONLY, 0o600)
+    descriptor = os.open(temporary, TO_CREATE, 0o600)
     with os.fdopen(descriptor, "wb") as file:
         file.write(data)
         file.writelines(pieces)
         file.flush()
-        os.fchmod(descriptor, mode)
+        set_permissions(temporary, descriptor, mode)
 
 
 def _default_permissions() -> int:

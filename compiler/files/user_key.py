@@ -10,6 +10,7 @@ from pathlib import Path
 
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
+from fretish.system.files import NO_LINK, NO_WAIT, TO_CREATE, TO_READ, is_own, is_private
 
 _LENGTH = 32
 """Length of the key in bytes."""
@@ -42,7 +43,7 @@ def _make(path: Path) -> None:
     """Write a complete key or none; an existing key is never replaced."""
     path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     temporary = path.with_name(f".{secrets.token_hex(8)}.tmp")
-    file = os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_WRONLY, 0o600)
+    file = os.open(temporary, TO_CREATE, 0o600)
     try:
         with os.fdopen(file, "wb") as stream:
             stream.write(secrets.token_bytes(_LENGTH))
@@ -53,12 +54,12 @@ def _make(path: Path) -> None:
 
 
 def _read(path: Path) -> bytes:
-    file = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
+    file = os.open(path, TO_READ | NO_LINK | NO_WAIT)
     with os.fdopen(file, "rb") as stream:
         about = os.fstat(file)
-        if not stat.S_ISREG(about.st_mode) or about.st_uid != os.geteuid():
+        if not stat.S_ISREG(about.st_mode) or not is_own(about):
             raise OSError(None, "it belongs to another user")
-        if about.st_mode & 0o077:
+        if not is_private(about):
             raise OSError(None, "other users may read or write it")
         key = stream.read(_LENGTH + 1)
     if len(key) != _LENGTH:

@@ -1,26 +1,29 @@
 """Questions answered in a separate process: a timeout or crash costs no other answer.
 
 A single operation on large diagrams cannot be interrupted from Python, and its memory use is
-unbounded. The process is forked, so that it has all data; it returns one finding at a time.
+unbounded. The process is forked, so that it has all data; it returns one finding at a time. Where
+processes cannot be forked, this process answers, with fewer limits (F932).
 """
 
 from __future__ import annotations
 
 import multiprocessing
 import os
-import resource
 import signal
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from multiprocessing.connection import Connection
-from multiprocessing.context import ForkProcess
-from pathlib import Path
+from multiprocessing.process import BaseProcess
 from typing import Any, TypeVar
 
-from compiler.files.processes import ignore_interrupts, reply, stops_blocked
+from compiler.files.processes import reply
 from fretc.analysis.arena.budget import guard
 from fretc.analysis.games.job import Job
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 from fretish.reading.recursion import with_recursion_limit
+from fretish.system.processes import FORKS, ignore_interrupts, stops_blocked, was_killed
+from fretish.system.resources import ProcessLimits, address_space, exceeded_time
 
 F = TypeVar("F")
 MEMORY = 4 * 2**30
@@ -41,6 +44,9 @@ def findings(jobs: Sequence[Job[F]], progress: Callable[[str], None]) -> Iterato
     Raises:
         Stopped: on Ctrl-C, after the findings of the remaining jobs.
     """
+    if not FORKS:
+        yield from _findings_here(jobs, progress)
+        return
     found: list[F] = []
     with _interruption() as is_stopped:
         number = 0
@@ -79,6 +85,29 @@ def findings(jobs: Sequence[Job[F]], progress: Callable[[str], None]) -> Iterato
             raise Interrupted
 
 
+def missing_limits() -> tuple[Diagnostic, ...]:
+    """F932 if the system has fewer limits for questions than Linux."""
+    return () if FORKS else (diagnostic("no_forked_process"),)
+
+
+def _findings_here(jobs: Sequence[Job[F]], progress: Callable[[str], None]) -> Iterator[F]:
+    """The same in this process: Ctrl-C interrupts a question, and nothing limits its memory."""
+    found: list[F] = []
+    for number, job in enumerate(jobs):
+        progress(job.title)
+        try:
+            for finding in with_recursion_limit(job.ask)(found):
+                found.append(finding)
+                yield finding
+        except MemoryError:
+            found.append(job.lost("it took more memory than there is"))
+            yield found[-1]
+        except KeyboardInterrupt:
+            for rest in jobs[number:]:
+                yield rest.lost("stopped by Ctrl-C")
+            raise Interrupted from None
+
+
 def finished(jobs: Sequence[Job[F]], progress: Callable[[str], None]) -> tuple[list[F], bool]:
     """The findings of the jobs, and whether Ctrl-C has stopped them."""
     found: list[F] = []
@@ -100,7 +129,7 @@ def _interruption() -> Iterator[Callable[[], bool]]:
         signal.signal(signal.SIGINT, before)
 
 
-def _next(process: ForkProcess, answers: Connection, is_stopped: Callable[[], bool]) -> Any:
+def _next(process: BaseProcess, answers: Connection, is_stopped: Callable[[], bool]) -> Any:
     """The next message: a finding, an internal error, or None; after Ctrl-C the rest of it.
 
     Raises:
@@ -121,8 +150,8 @@ _PATIENCE = 0.1
 """Seconds between two checks for Ctrl-C."""
 
 
-def _started(jobs: Sequence[Job[F]], found: Sequence[F]) -> tuple[ForkProcess, Connection]:
-    context = multiprocessing.get_context("fork")
+def _started(jobs: Sequence[Job[F]], found: Sequence[F]) -> tuple[BaseProcess, Connection]:
+    context: Any = multiprocessing.get_context("fork")
     ours, theirs = context.Pipe(duplex=False)
     process = context.Process(target=_answer, args=(theirs, jobs, tuple(found)), daemon=True)
     with stops_blocked():
@@ -135,19 +164,12 @@ def _answer(connection: Connection, jobs: Sequence[Job[F]], found: Sequence[F]) 
     """Send each finding, None at the end of each job, and an internal error if there is one."""
     ignore_interrupts()
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # last words of a library
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    most = _address_space() + MEMORY
-    resource.setrlimit(resource.RLIMIT_AS, (most, most))
+    ProcessLimits(address_space() + MEMORY)
     guard()
     with suppress(OSError):
         is_complete, error = reply(_answer_all, connection, jobs, found)
         if not is_complete:
             connection.send(error)
-
-
-def _address_space() -> int:
-    """The size of the process in bytes, which it has from its parent."""
-    return int(Path("/proc/self/statm").read_bytes().split()[0]) * os.sysconf("SC_PAGE_SIZE")
 
 
 @with_recursion_limit
@@ -168,6 +190,6 @@ _FULL = (
 
 def _ending(status: int) -> str:
     """Why the process ended before its answer."""
-    if status in (-signal.SIGPROF, -signal.SIGKILL):
+    if exceeded_time(status) or was_killed(status):
         return "it exceeded its time limit"
     return f"it took more than {MEMORY // 2**30} GiB of memory, or failed (exit status {status})"

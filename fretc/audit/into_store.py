@@ -6,7 +6,6 @@ file beside the evidence, and the next audit takes it over.
 
 from __future__ import annotations
 
-import fcntl
 import os
 from collections.abc import Callable, Collection, Sequence
 from contextlib import closing, suppress
@@ -57,6 +56,7 @@ from fretc.audit.store.register import (
 from fretc.audit.store.writer import StoreFile, complete, not_written, publish, remove
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
+from fretish.system.files import FolderLock
 
 
 @dataclass(frozen=True, slots=True)
@@ -195,15 +195,14 @@ class StoreWriter:
         destination(folder / FILE)
         self._new_folder = None if folder.parent.exists() else folder.parent
         folder.mkdir(parents=True, exist_ok=True)
-        self._lock = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+        self._lock = FolderLock(folder)
         try:
-            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
             for path in unfinished(folder):
                 if not recovered(path):
                     remove_file(path)
             self.earlier = ReusableResults(folder, plan, key, rehash=rehash)
         except BaseException:
-            os.close(self._lock)
+            self._lock.release()
             raise
         self._stopped = unfinished(folder)
         """The files of audits that were stopped."""
@@ -243,7 +242,7 @@ class StoreWriter:
                     with suppress(OSError):  # the folder is not empty
                         self._new_folder.rmdir()
         finally:
-            os.close(self._lock)
+            self._lock.release()
 
     def run(self, engine: Engine, tell: Callable[[str], None]) -> StoredAudit | Diagnostic:
         """Audit the logs without reusable results, and write all results.

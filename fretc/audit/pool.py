@@ -13,15 +13,16 @@ from contextlib import closing, suppress
 from dataclasses import dataclass
 from enum import Enum
 from multiprocessing.connection import Connection, wait
-from multiprocessing.context import ForkProcess
+from multiprocessing.process import BaseProcess
 from typing import Any, TypeVar, overload
 
-from compiler.files.processes import ignore_interrupts, reply, stops_blocked
+from compiler.files.processes import reply
 from fretc.logs.storage.log_names import name_of
 from fretish.bindings.amounts import exact_duration
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
+from fretish.system.processes import FORKS, ignore_interrupts, stops_blocked
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -113,14 +114,15 @@ def map_processes(
 
     Args:
         function: a function whose results can be sent between processes.
-        items: any number of items; a single one without limits is processed by this process.
+        items: any number of items; a single one without limits is processed by this process, as are
+            all where processes cannot be forked.
         jobs: the number of processes.
-        limits: the time limits; an item over a limit gives `TimedOut`.
+        limits: the time limits; an item over a limit gives `TimedOut`. They need forked processes.
 
     Raises:
         Exception: an exception that the function raises.
     """
-    if len(items) < 2 and limits == ENDLESS:
+    if limits == ENDLESS and (len(items) < 2 or not FORKS):
         yield from ((index, function(thing)) for index, thing in enumerate(items))
         return
     clock = _Clock(limits)
@@ -188,8 +190,8 @@ class _WorkerPool:
 
     def __init__(self, function: Callable[[Any], Any], items: Sequence[Any], clock: _Clock) -> None:
         self._function, self._things, self._clock = function, items, clock
-        self._idle: list[tuple[Connection, ForkProcess]] = []
-        self.busy: dict[Connection, tuple[ForkProcess, int, float]] = {}
+        self._idle: list[tuple[Connection, BaseProcess]] = []
+        self.busy: dict[Connection, tuple[BaseProcess, int, float]] = {}
         """Each connection with its process, the index of its item, and its start time."""
 
     @property
@@ -235,9 +237,9 @@ class _WorkerPool:
         for connection, process in (*working, *self._idle):
             _end(connection, process)
 
-    def _spawn(self) -> tuple[Connection, ForkProcess]:
+    def _spawn(self) -> tuple[Connection, BaseProcess]:
         # Forked, because some functions cannot be pickled, and loaded modules are inherited.
-        context = multiprocessing.get_context("fork")
+        context: Any = multiprocessing.get_context("fork")
         ours, theirs = context.Pipe()
         # A pipe ends when all its ends are closed: a child must close those of other children.
         inherited = [ours, *self.busy, *(connection for connection, _ in self._idle)]
@@ -249,7 +251,7 @@ class _WorkerPool:
         return ours, process
 
 
-def _end(connection: Connection, process: ForkProcess) -> None:
+def _end(connection: Connection, process: BaseProcess) -> None:
     process.kill()
     connection.close()
     process.join()

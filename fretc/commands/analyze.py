@@ -28,6 +28,7 @@ from fretc.terminal.output import (
     EXIT_VIOLATION,
     coloured,
     fail,
+    print_diagnostics,
     print_status,
     write_outputs,
 )
@@ -149,8 +150,9 @@ def asked(
 ) -> tuple[Analysis, bool]:
     """The analysis of the requirements, and whether Ctrl-C has stopped it."""
     from fretc.analysis.analysis import assembled, jobs
-    from fretc.analysis.worker import finished
+    from fretc.analysis.worker import finished, missing_limits
 
+    print_diagnostics(missing_limits())
     found, stopped = finished(jobs(requirements, chosen, assumed, options), print_activity)
     return assembled(requirements, chosen, assumed, options, found), stopped
 

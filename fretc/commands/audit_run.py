@@ -52,6 +52,7 @@ from fretc.terminal.screen import screen
 from fretish.diagnostics.diagnostic import Diagnostic, has_errors
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible
+from fretish.system.processes import FORKS
 from fretish.units import nanoseconds
 
 if TYPE_CHECKING:  # pyarrow, which only an audit into a store needs
@@ -204,6 +205,8 @@ def _limits(log: str | None, whole: str | None, logs: Sequence[str], engine: str
     if limits != ENDLESS and (STDIN in logs or engine != "local"):
         what = "standard input" if STDIN in logs else f"`--engine {engine}`"
         fail(diagnostic("no_time_limits", what=what))
+    if limits != ENDLESS and not FORKS:
+        fail(diagnostic("no_time_limits_here"))
     return limits
 
 

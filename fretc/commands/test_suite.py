@@ -12,7 +12,7 @@ from compiler.files.records import plain
 from compiler.files.templating import to_json
 from compiler.formalization.formalized import FormalizedRequirement
 from fretc.analysis.text_output import Line
-from fretc.analysis.worker import finished
+from fretc.analysis.worker import finished, missing_limits
 from fretc.commands.opening import RequirementSet
 from fretc.commands.simulate import require_simulation
 from fretc.terminal.output import (
@@ -22,6 +22,7 @@ from fretc.terminal.output import (
     coloured,
     fail,
     or_fail,
+    print_diagnostics,
     print_status,
     write_outputs,
 )
@@ -69,6 +70,7 @@ def make_tests(checked: RequirementSet, options: SuiteOptions, protected: Sequen
         suite, stopped = _saved(options.saved, requirements), False
     else:
         work = jobs(requirements, checked.assumed, options.seconds)
+        print_diagnostics(missing_limits())
         found, stopped = finished(work, print_activity)
         suite = suite_of(requirements, checked.assumed, found)
     text = f"{to_json(plain(suite))}\n"

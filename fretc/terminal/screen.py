@@ -5,6 +5,7 @@ The only module that imports wcwidth.
 
 from __future__ import annotations
 
+import codecs
 import os
 import sys
 from collections.abc import Iterable
@@ -22,6 +23,32 @@ _SHORTEST = 8
 _LETTERS = {"\N{MULTIPLICATION SIGN}": "x", "\N{HORIZONTAL ELLIPSIS}": "."} | {
     sign.glyph: sign.letter for sign in STATUS_SYMBOLS
 }
+_IN_ASCII = _LETTERS | {
+    "\N{RIGHTWARDS ARROW}": "->",
+    "\N{LEFTWARDS ARROW}": "<-",
+    "\N{NOT EQUAL TO}": "!=",
+    "\N{EN DASH}": "-",
+    "\N{BOX DRAWINGS LIGHT HORIZONTAL}": "-",
+    "\N{LEFT DOUBLE QUOTATION MARK}": '"',
+    "\N{RIGHT DOUBLE QUOTATION MARK}": '"',
+    "\N{RIGHT SINGLE QUOTATION MARK}": "'",
+    "\N{MIDDLE DOT}": "*",
+}
+IN_ASCII = "fretc-ascii"
+"""Name of the error handler for streams whose encoding lacks symbols, as of consoles of Windows."""
+
+
+def _in_ascii(error: UnicodeError) -> tuple[str | bytes, int]:
+    """Letters for symbols of fretc, and escapes for all other characters."""
+    assert isinstance(error, UnicodeEncodeError)
+    character = error.object[error.start]
+    if character not in _IN_ASCII:
+        error.end = error.start + 1
+        return codecs.backslashreplace_errors(error)
+    return _IN_ASCII[character], error.start + 1
+
+
+codecs.register_error(IN_ASCII, _in_ascii)
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import os
-import signal
 import subprocess
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import suppress
 from threading import Thread
 from typing import Any
 
@@ -15,6 +13,7 @@ from compiler.files.processes import isolate_imports
 from compiler.files.templating import to_json
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
+from fretish.system.processes import OWN_GROUP, kill_all, was_killed
 
 PATIENCE = 60
 """Seconds that a command may take."""
@@ -62,7 +61,7 @@ class Reaction:
         """Kill all running commands, with the processes that they started."""
         self._is_over = True
         for process in [*self._processes]:
-            _kill(process)
+            kill_all(process)
 
     def _run(self, facts: Mapping[str, Any]) -> None:
         isolate_imports()
@@ -78,13 +77,14 @@ class Reaction:
                 stdout=subprocess.DEVNULL,
                 env={**os.environ, **named},
                 start_new_session=True,  # Ctrl-C is for the watch
+                creationflags=OWN_GROUP,
             )
         except (OSError, ValueError) as error:
             self._failed(f"cannot be started: {getattr(error, 'strerror', None) or error}")
             return
         self._processes.add(process)
         if self._is_over:
-            _kill(process)
+            kill_all(process)
         self._follow(process, f"{to_json(facts)}\n".encode())
         self._processes.discard(process)
 
@@ -92,20 +92,14 @@ class Reaction:
         try:
             process.communicate(facts, PATIENCE)
         except subprocess.TimeoutExpired:
-            _kill(process)
+            kill_all(process)
             process.communicate()
             self._failed(f"took longer than {PATIENCE} s, and was stopped")
         else:
-            if self._is_over and process.returncode == -signal.SIGKILL:
+            if self._is_over and was_killed(process.returncode):
                 self._failed(f"was stopped: it still ran {_LAST} s after the end of the watch")
             elif process.returncode:
                 self._failed(f"ended with exit status {process.returncode}")
 
     def _failed(self, how: str) -> None:
         self._problems.append(diagnostic("reaction_failed", command=self._command[0], how=how))
-
-
-def _kill(process: subprocess.Popen[bytes]) -> None:
-    """Kill the process with its group, which has the processes that it started."""
-    with suppress(ProcessLookupError):
-        os.killpg(process.pid, signal.SIGKILL)

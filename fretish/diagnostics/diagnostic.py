@@ -234,6 +234,7 @@ class Code(Enum):
     TOO_COSTLY = ("F930", "the input needs more CPU time or memory than allowed")
     NOTICE_FAILED = ("F922", "the command of `--notify` did not take the summary")
     BAD_KEY = ("F931", "a key cannot be used")
+    FEWER_LIMITS = ("F932", "this operating system has fewer limits of time and memory than Linux")
     PROGRAM_NOT_STARTED = ("F940", "the program under test cannot be started")
     PROGRAM_LINE = ("F941", "the program under test printed a wrong line")
     PROGRAM_SILENT = ("F942", "the program under test printed no line in time")

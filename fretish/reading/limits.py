@@ -7,19 +7,16 @@ for its size. Single library calls that could exceed it at once have their own l
 
 from __future__ import annotations
 
-import os
-import signal
 import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from pathlib import Path
-from types import FrameType
 from typing import TypeVar
 
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Span
+from fretish.system.resources import periodically, resident_memory
 
 SECONDS = 3.0
 """CPU seconds allowed for a text of any size."""
@@ -71,15 +68,12 @@ def budget(size: int) -> Iterator[None]:
         extend_budget(size)
         yield
         return
-    _budgets.append(_Budget(time.process_time() + SECONDS, _resident() + MEMORY))
+    _budgets.append(_Budget(time.process_time() + SECONDS, resident_memory() + MEMORY))
     extend_budget(size)
-    signal.signal(signal.SIGPROF, _look)  # Not reset: a late signal finds no budget.
-    signal.siginterrupt(signal.SIGPROF, False)
-    signal.setitimer(signal.ITIMER_PROF, _LOOK, _LOOK)
     try:
-        yield
+        with periodically(_LOOK, _look):
+            yield
     finally:
-        signal.setitimer(signal.ITIMER_PROF, 0)
         _budgets.clear()
 
 
@@ -120,17 +114,9 @@ def exceeded(error: ExceededError, place: Span | None = None) -> Diagnostic:
     )
 
 
-def _look(_number: int, _frame: FrameType | None) -> None:
+def _look() -> None:
     for current in _budgets:
         if time.process_time() > current.seconds:
             raise ExceededError(f"more than {SECONDS:g} CPU seconds")
-        if _resident() > current.memory:
+        if resident_memory() > current.memory:
             raise ExceededError(f"more than {MEMORY // 2**20} MiB of memory")
-
-
-_PAGE = os.sysconf("SC_PAGE_SIZE")
-
-
-def _resident() -> int:
-    """The resident memory of the process in bytes."""
-    return int(Path("/proc/self/statm").read_bytes().split()[1]) * _PAGE

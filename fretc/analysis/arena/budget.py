@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import signal
+import sys
 import time
 from dataclasses import dataclass, field
 
@@ -21,7 +22,7 @@ class Budget:
 
     def __post_init__(self) -> None:
         """Start the guard of the process, if requested."""
-        if _is_guarded and math.isfinite(self.seconds):
+        if sys.platform != "win32" and _is_guarded and math.isfinite(self.seconds):
             signal.setitimer(signal.ITIMER_PROF, _OVERTIME * self.seconds + 1)
 
     def again(self) -> Budget:
@@ -60,8 +61,9 @@ def guard() -> None:
     A single operation on large diagrams cannot be interrupted in another way.
     """
     global _is_guarded
-    signal.signal(signal.SIGPROF, signal.SIG_DFL)
-    _is_guarded = True
+    if sys.platform != "win32":
+        signal.signal(signal.SIGPROF, signal.SIG_DFL)
+        _is_guarded = True
 
 
 ENDLESS = Budget(math.inf)

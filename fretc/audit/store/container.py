@@ -16,7 +16,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Annotated, Any, Generic, TypeVar
-from urllib.parse import quote
 
 import zstandard
 
@@ -38,6 +37,7 @@ from compiler.files.records import (
 from fretc.audit.evidence.schema import Result
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
+from fretish.system.files import NO_LINK, NO_WAIT, TO_READ
 
 T = TypeVar("T")
 FILE = "evidence.sqlite"
@@ -263,7 +263,7 @@ def recovered(path: Path) -> bool:
 def is_container(path: Path) -> bool:
     """Whether a path is a regular file that fretc has written."""
     try:
-        descriptor = os.open(path, os.O_RDONLY | os.O_CLOEXEC | os.O_NOFOLLOW | os.O_NONBLOCK)
+        descriptor = os.open(path, TO_READ | NO_LINK | NO_WAIT)
         with open(descriptor, "rb") as file:
             start = file.read(72) if stat.S_ISREG(os.fstat(descriptor).st_mode) else b""
     except OSError:
@@ -280,7 +280,7 @@ def opened(path: Path) -> Iterator[sqlite3.Connection]:
     """
     if not is_container(path):
         raise SchemaError("it is not a file that fretc has written")
-    address = f"file:{quote(os.fsencode(path.absolute()))}?mode=ro&immutable=1"
+    address = f"{path.absolute().as_uri()}?mode=ro&immutable=1"
     try:
         with closing(sqlite3.connect(address, uri=True, isolation_level=None)) as connection:
             connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LARGEST)

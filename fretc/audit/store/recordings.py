@@ -30,6 +30,7 @@ from fretc.logs.storage.log_names import name_of
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source, Span
+from fretish.system.files import NO_LINK, NO_WAIT, TO_READ
 
 SCHEMA = "fretc-columns-2"
 SUFFIX = ".columns"
@@ -117,8 +118,7 @@ class SampleCache:
 
     def _content(self, path: Path) -> tuple[dict[str, Any], list[Array]] | None:
         """The content of a file; None: this user's fretc did not write it at this path."""
-        flags = os.O_RDONLY | os.O_CLOEXEC | os.O_NOFOLLOW | os.O_NONBLOCK
-        with open(os.open(path, flags), "rb") as stream:
+        with open(os.open(path, TO_READ | NO_LINK | NO_WAIT), "rb") as stream:
             about = os.fstat(stream.fileno())
             if not stat.S_ISREG(about.st_mode) or about.st_size > _MOST + _CHECK:
                 return None

@@ -31,6 +31,7 @@ from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
 from fretish.reading.limits import extend_budget
+from fretish.system.files import for_second_thread, read_at
 
 _MOST = 2**36
 """The most bytes of a log whose length the server does not state."""
@@ -116,12 +117,13 @@ def _opened(path: str, stack: ExitStack, *, whole: bool) -> OpenLog | Diagnostic
 
     file, size = stream.fileno(), before.st_size
     same = f"/proc/self/fd/{file}"
+    same = same if os.path.exists(same) else path  # as on macOS; `changed` then tells
     sha256: Callable[[], str]
     if content is not None:
         held = cast("io.BufferedReader", io.BytesIO(content))
         size, sha256 = len(content), partial(_sha256, content)
         return OpenLog(held, size, sha256, _nothing, path, same, changed, beginning)
-    digest = _Digest(file, size)
+    digest = _Digest(file, size, path)
     sha256 = digest.result
     return OpenLog(stream, size, sha256, digest.begin, path, same, changed, beginning)
 
@@ -150,14 +152,15 @@ class _Digest:
     It hashes the open file itself: its name may now belong to another one.
     """
 
-    def __init__(self, descriptor: int, size: int) -> None:
-        self._descriptor, self._size = descriptor, size
+    def __init__(self, descriptor: int, size: int, path: str) -> None:
+        self._descriptor, self._size, self._path = descriptor, size, path
         self._thread: threading.Thread | None = None
         self._result: str | OSError = ""
 
     def begin(self) -> None:
         if self._thread is None:
-            own = os.dup(self._descriptor)  # the reader may be closed before the hash is complete
+            # the reader may be closed before the hash is complete
+            own = for_second_thread(self._descriptor, self._path)
             self._thread = threading.Thread(target=self._run, args=(own,), daemon=True)
             self._thread.start()
 
@@ -170,14 +173,14 @@ class _Digest:
         return self._result
 
     def _run(self, own: int) -> None:
-        digest, block, at = hashlib.sha256(), memoryview(bytearray(_HASHED)), 0
+        digest, at = hashlib.sha256(), 0
         try:
             while at < self._size:
-                read = os.preadv(own, [block[: self._size - at]], at)
-                if not read:
+                block = read_at(own, min(_HASHED, self._size - at), at)
+                if not block:
                     raise OSError(None, "it became shorter while it was read")
-                digest.update(block[:read])
-                at += read
+                digest.update(block)
+                at += len(block)
             self._result = digest.hexdigest()
         except OSError as error:
             self._result = error

@@ -14,7 +14,7 @@ from urllib.parse import parse_qsl, urlencode, urlsplit, urlunsplit
 
 STDIN = "-"
 _STDIN_NAME = "<stdin>"
-_URL = re.compile(r"[A-Za-z][A-Za-z0-9+.:-]*://.*", re.DOTALL)
+_URL = re.compile(r"[A-Za-z][A-Za-z0-9+.:-]+://.*", re.DOTALL)
 _SECRET = re.compile(r"sig|token|key|cred|secret|passw|auth", re.IGNORECASE)
 _ESCAPES = {"\\": r"\\", "\n": r"\n", "\r": r"\r"}
 """As `sha256sum` writes them; each byte of another character is `\\xff`."""
@@ -32,7 +32,7 @@ def name_of(path: str) -> str:
         return _STDIN_NAME
     if path == _STDIN_NAME:
         return f"./{path}"
-    public = _without_secrets(path) if is_url(path) else path
+    public = _without_secrets(path) if is_url(path) else path.replace(os.sep, "/")
     if public.isprintable() and "\\" not in public:
         return public
     return "".join(

@@ -6,9 +6,7 @@ are limited; the program is ended with the run.
 
 from __future__ import annotations
 
-import os
 import selectors
-import signal
 import subprocess
 import time
 from collections.abc import Iterator, Mapping, Sequence
@@ -21,6 +19,7 @@ from fretc.testing.exports.tables import Cell, cell_text, csv_text
 from fretish.diagnostics.diagnostic import Diagnostic, DiagnosticError
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible
+from fretish.system.processes import OWN_GROUP, kill_all, selectable
 from monitors.kernel.tables import InputError
 from monitors.kernel.variable_tables import read_variables
 from monitors.kernel.variables import Variable
@@ -75,14 +74,15 @@ class ProgramRun:
                 stderr=subprocess.PIPE,
                 bufsize=0,
                 start_new_session=True,  # Ctrl-C reaches only fretc, which ends the children.
+                creationflags=OWN_GROUP,
             )
         except (OSError, ValueError) as error:
             why = getattr(error, "strerror", None) or error
             raise ProgramError(_not_started(self._command, str(why))) from error
-        self._output = _stream(self._process.stdout)
         self._selector = selectors.DefaultSelector()
-        for stream in (self._output, _stream(self._process.stderr)):
-            self._selector.register(stream, selectors.EVENT_READ)
+        for pipe in (self._process.stdout, self._process.stderr):
+            stream, read = selectable(_stream(pipe))
+            self._selector.register(stream, selectors.EVENT_READ, (pipe, read))
         return self
 
     def __exit__(
@@ -98,8 +98,7 @@ class ProgramRun:
         with suppress(subprocess.TimeoutExpired):
             if error is None:
                 process.wait(_FAREWELL)
-        with suppress(ProcessLookupError, PermissionError):
-            os.killpg(process.pid, signal.SIGKILL)
+        kill_all(process)
         process.wait()
         self._selector.close()
         for stream in (process.stdout, process.stderr):
@@ -152,12 +151,13 @@ class ProgramRun:
         due = time.monotonic() + seconds
         while ready := self._selector.select(max(0.0, due - time.monotonic())):
             for key, _ in ready:
-                found = os.read(key.fd, LONGEST_LINE)
+                pipe, read = key.data
+                found = read(LONGEST_LINE)
                 if not found:
                     self._selector.unregister(key.fileobj)
-                    if key.fileobj is self._output:
+                    if pipe is self._process.stdout:
                         raise ProgramError(self._ended())
-                elif key.fileobj is self._output:
+                elif pipe is self._process.stdout:
                     self._buffer += found
                     return True
                 else:
@@ -179,8 +179,8 @@ class ProgramRun:
         with suppress(subprocess.TimeoutExpired):
             self._process.wait(_FAREWELL)
         while True:  # The last lines of its standard error.
-            ready = [k for k, _ in self._selector.select(0) if k.fileobj is not self._output]
-            found = b"".join(os.read(key.fd, _LAST_WORDS) for key in ready)
+            ready = [key.data for key, _ in self._selector.select(0)]
+            found = b"".join(r(_LAST_WORDS) for p, r in ready if p is self._process.stderr)
             if not found:
                 break
             self._errors = (self._errors + found)[-_LAST_WORDS:]

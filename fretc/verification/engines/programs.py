@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import os
-import signal
 import subprocess
 from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 from compiler.files.processes import isolate_imports
+from fretish.system.processes import OWN_GROUP, kill_all
 
 _MOST_OUTPUT = 32 * 2**20
 """Maximum number of bytes that a program may write to one file."""
@@ -50,19 +49,26 @@ def run(command: Sequence[str], folder: Path, *, seconds: float, memory: int) ->
     file = folder / "output.txt"
     with file.open("wb") as output:
         process = subprocess.Popen(
-            ["/bin/sh", "-c", _LIMITED, str(memory // 1024), *command],
+            _limited(command, memory),
             cwd=folder,
             stdin=subprocess.DEVNULL,
             stdout=output,
             stderr=subprocess.STDOUT,
             start_new_session=True,
+            creationflags=OWN_GROUP,
         )
         try:
             status: int | None = process.wait(seconds)
         except subprocess.TimeoutExpired:
             status = None
         finally:  # Also if the user stops fretc.
-            with suppress(ProcessLookupError):
-                os.killpg(process.pid, signal.SIGKILL)
+            kill_all(process)
             process.wait()
     return Completion(status, file.read_text(encoding="utf-8", errors="replace"))
+
+
+def _limited(command: Sequence[str], memory: int) -> Sequence[str]:
+    """The command with its limits; Windows, which has no `sh`, limits only its time."""
+    if os.name != "posix":
+        return command
+    return ["/bin/sh", "-c", _LIMITED, str(memory // 1024), *command]

@@ -8,20 +8,20 @@ from __future__ import annotations
 
 import gc
 import multiprocessing
-import resource
-import signal
+import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from math import ceil
 from multiprocessing.connection import Connection
 from multiprocessing.context import SpawnProcess
 from multiprocessing.resource_tracker import ensure_running
 from types import ModuleType
 from typing import Any, ParamSpec, TypeVar
 
-from compiler.files.processes import ignore_interrupts, isolate_imports, reply, stops_blocked
+from compiler.files.processes import isolate_imports, reply
+from fretish.system.processes import ignore_interrupts, stops_blocked, was_killed
+from fretish.system.resources import OUT_OF_MEMORY, ProcessLimits, exceeded_time
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -120,9 +120,11 @@ class SandboxSession:
         if self._process is None or self._connection is None:
             isolate_imports()
             context = multiprocessing.get_context("spawn")
-            self._connection, theirs = context.Pipe()
+            pair: Any = context.Pipe()  # Windows has a class of its own
+            self._connection, theirs = pair
             self._process = context.Process(target=_serve, args=(theirs, self._limits), daemon=True)
-            ensure_running()  # Otherwise `start` would do this, and unblock the signals.
+            if os.name == "posix":
+                ensure_running()  # Otherwise `start` would do this, and unblock the signals.
             with _without_main(), stops_blocked():
                 self._process.start()
             theirs.close()
@@ -165,9 +167,11 @@ def _answer(connection: Connection, process: SpawnProcess, limits: CallLimits) -
 
 def _ended(status: int, limits: CallLimits) -> str:
     """Why a process ended without a result."""
-    if status in (-signal.SIGXCPU, -signal.SIGKILL):
-        more = "" if status == -signal.SIGXCPU else ", or it was killed"
+    if exceeded_time(status) or was_killed(status):
+        more = "" if exceeded_time(status) else ", or it was killed"
         return f"out of time: more than {limits.seconds} CPU seconds{more}"
+    if status == OUT_OF_MEMORY:
+        return _out_of_memory(limits)
     how = f"signal {-status}" if status < 0 else f"exit status {status}"
     return f"the process crashed ({how}); it may have had too little memory"
 
@@ -179,20 +183,11 @@ def _out_of_memory(limits: CallLimits) -> str:
 def _serve(connection: Connection, limits: CallLimits) -> None:
     """Answer calls until the connection is closed."""
     ignore_interrupts()
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    resource.setrlimit(resource.RLIMIT_AS, (limits.memory, limits.memory))
+    own = ProcessLimits(limits.memory)
     gc.set_threshold(*_RARELY)
     with suppress(EOFError, OSError):
         while True:
             function, args, kwargs = connection.recv()
-            _allow(limits.seconds)
+            own.allow(limits.seconds)
             connection.send(reply(function, *args, **kwargs))
             del function, args, kwargs
-
-
-def _allow(seconds: int) -> None:
-    """Set the CPU limit to so many seconds from now."""
-    used = resource.getrusage(resource.RUSAGE_SELF)
-    most = resource.getrlimit(resource.RLIMIT_CPU)[1]
-    soon = ceil(used.ru_utime + used.ru_stime) + seconds
-    resource.setrlimit(resource.RLIMIT_CPU, (soon if most < 0 else min(soon, most), most))

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import json
 import os
-import signal
 import subprocess
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
@@ -25,6 +24,7 @@ from fretc.verification.compiled.readings import RailReading, judged
 from fretc.verification.compiled.tools import ToolError
 from fretc.verification.monitor.equivalence import Judgement
 from fretc.verification.monitor.rails import Letter
+from fretish.system.resources import exceeded_time
 from monitors.kernel.verdicts import Truth
 
 FLAGS = ("--disallow-code-generation-from-strings",)
@@ -250,7 +250,7 @@ class ModuleRequirement:
         line = self._process.stdout.readline()
         if not line.endswith(b"\n"):
             with suppress(subprocess.TimeoutExpired):
-                if self._process.wait(_ENDING) == -signal.SIGXCPU:
+                if exceeded_time(self._process.wait(_ENDING)):
                     raise ToolError("out of time: Node took as many CPU seconds")
             text = self._errors.read_text(encoding="utf-8", errors="replace")
             lines = (each for each in text.splitlines() if "Error" in each or "FATAL" in each)

@@ -177,7 +177,8 @@ class Foxglove(Middleware):
     def _socket(self) -> socket.socket:
         """Open a connection; it is also lost if the server does not accept data."""
         plain = socket.create_connection((self._host, self._port), PATIENCE)
-        plain.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, int(1000 * PATIENCE))
+        if hasattr(socket, "TCP_USER_TIMEOUT"):  # Linux; elsewhere the system waits longer
+            plain.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, int(1000 * PATIENCE))
         return plain
 
     # One connection

@@ -26,6 +26,7 @@ from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source as Text
 from fretish.diagnostics.source import Span
+from fretish.system.files import read_at
 
 _WAIT = 0.05
 """Seconds between two checks of a file that has not grown."""
@@ -101,10 +102,10 @@ class Log:
         while True:
             # a stream would give again what it has in its buffer, whatever the file has now
             file, size = stream.fileno(), len(self._before)
-            bytes_before = os.pread(file, size, at - size)
+            bytes_before = read_at(file, size, at - size)
             file_size = os.fstat(file).st_size
             is_there = file_size >= at + length
-            data = os.pread(file, length, at) if is_there else b""
+            data = read_at(file, length, at) if is_there else b""
             if bytes_before == self._before and len(data) == length:
                 self._before = (bytes_before + data[-_KNOWN:])[-_KNOWN:]
                 return data

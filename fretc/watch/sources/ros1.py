@@ -19,6 +19,7 @@ from fretc.watch.sources.middleware import Middleware, several_publishers
 from fretc.watch.sources.source import Channel
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
+from fretish.system.processes import OWN_GROUP
 from monitors.stop_supervisor import Status
 
 PYTHON = "/usr/bin/python3"
@@ -99,6 +100,7 @@ class Ros1(Middleware):
                 stderr=subprocess.DEVNULL,
                 env=environment,
                 start_new_session=True,  # Ctrl-C is for the watch, which then ends the node
+                creationflags=OWN_GROUP,
             )
             return self._node
 

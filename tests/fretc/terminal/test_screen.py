@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fretc.terminal.screen import Screen, fitted, padded, screen, titled, width
+from fretc.terminal.screen import IN_ASCII, Screen, fitted, padded, screen, titled, width
 from fretish.diagnostics.status_symbols import STATUS_SYMBOLS
 
 ENCODINGS = ("utf-8", "latin-1", "ascii", "cp437")
@@ -64,3 +64,13 @@ def test_a_title_is_shortened_and_its_id_never(title: str, columns: int, text: s
 def test_a_titled_name_is_never_wider_than_its_room(id: str, title: str, columns: int) -> None:
     screen = Screen()
     assert width(titled(screen.text(id), screen.text(title), columns)) <= columns
+
+
+def test_a_console_without_a_symbol_gets_its_letter_and_an_escape_for_any_other_character() -> None:
+    text = "✔ R1 … 2 \N{MULTIPLICATION SIGN} 3 → 4 ─ “a” 日 \udcff"
+    assert text.encode("cp1252", IN_ASCII).decode("cp1252") == (
+        "+ R1 … 2 \N{MULTIPLICATION SIGN} 3 -> 4 - “a” \\u65e5 \\udcff"
+    )
+    assert text.encode("ascii", IN_ASCII).decode("ascii") == (
+        '+ R1 . 2 x 3 -> 4 - "a" \\u65e5 \\udcff'
+    )

@@ -199,6 +199,31 @@ CLASHES = (
 )  # fmt: skip
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("cc", "processor"),
+    [
+        ("aarch64-linux-gnu-gcc", "qemu-aarch64-static"),
+        ("arm-linux-gnueabihf-gcc", "qemu-arm-static"),
+    ],
+)
+def test_monitors_for_processors_of_arm_tell_the_same(
+    cc: str, processor: str, tmp_path: Path
+) -> None:
+    """The second has words of 32 bits, and on both a `char` has no sign."""
+    requirements, choose = of_requirements(), random.Random(cc)
+    machine, source = monitors(requirements), Source.of(*requirements)
+    launcher = (installed(processor),)
+    program = compiled(tmp_path, cc, source, flags=[*STRICT, "-static"], launcher=launcher)
+    width = len(source.inputs)
+    hold(machine, program, *(rows(choose, width, choose.choice([12, 60, 140])) for _ in range(20)))
+    for sentences in in_files():
+        every = [requirement(sentence, f"R{i}") for i, sentence in enumerate(sentences)]
+        machine, source = monitors(every), Source.of(*every)
+        program = compiled(tmp_path, cc, source, flags=[*STRICT, "-static"], launcher=launcher)
+        hold(machine, program, *(rows(choose, len(source.inputs), 60) for _ in range(24)))
+
+
 def clashing(id: str) -> Source:
     """A monitor whose propositions are called as what is generated is, and as key words are."""
     quoted = (name if re.fullmatch(r"x > 3", name) else f'"{name}"' for name in CLASHES)

@@ -5,10 +5,11 @@ from __future__ import annotations
 import os
 import subprocess
 
+import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from fretc.logs.storage.log_names import STDIN, name_of, path_of, shell_word
+from fretc.logs.storage.log_names import STDIN, is_url, name_of, path_of, shell_word
 
 PARTS = st.sampled_from(
     [
@@ -55,6 +56,14 @@ def test_a_name_from_elsewhere_is_a_path_that_has_a_name(name: str) -> None:
     path = path_of(name)
     assert path == name or name_of(path) == name
     assert "\0" not in path or path == name
+
+
+def test_a_path_of_windows_is_shown_with_slashes(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(os, "sep", "\\")
+    assert name_of("C:\\logs\\run 1.mcap") == "C:/logs/run 1.mcap"
+    assert path_of("C:/logs/run 1.mcap") == "C:/logs/run 1.mcap"
+    assert not is_url("C://logs/run.mcap")
+    assert is_url("s3://bucket/run.mcap")
 
 
 def test_what_is_usual_stays_as_it_is() -> None:
