@@ -4,7 +4,8 @@ Two engines give the columns: `evaluate` computes all ticks at once, `stepped` s
 tick by tick. Both compute a certain column (`must`) and a possible one (`may`) of each signal.
 
 The text below the imports is copied into every generated monitor exactly, names and comments
-included: a change of it changes all of them.
+included: a change of it changes all of them. Types of dataclasses are in parentheses: for others
+that are texts, `dataclass` looks its module up in `sys.modules`, where an executed text has none.
 """
 
 import itertools
@@ -51,17 +52,17 @@ class Outcome:
     verdict: Verdict
     finite: Truth
     """FRET's verdict on the finite trace."""
-    first_violation: "int | None"
-    violations: "Sequence[tuple[int, int]]"
+    first_violation: "(int | None)"
+    violations: "(Sequence[tuple[int, int]])"
     """Intervals of ticks at which an obligation was violated, or was overdue without response."""
-    unknown: "Sequence[tuple[int, int]]"
+    unknown: "(Sequence[tuple[int, int]])"
     """Intervals of ticks at which it is unknown whether an obligation was violated."""
-    triggers: "Sequence[int]"
-    answers: "Sequence[tuple[int, int]]"
+    triggers: "(Sequence[int])"
+    answers: "(Sequence[tuple[int, int]])"
     """Trigger and first response of each obligation that was met."""
-    open: "Sequence[tuple[int, int | None]]"
+    open: "(Sequence[tuple[int, int | None]])"
     """Trigger and deadline (None: no deadline) of each obligation that is open at the end."""
-    uncertain: "Sequence[int]" = ()
+    uncertain: "(Sequence[int])" = ()
     """Triggers whose response or open obligation depends on unknown values; all others do not
     depend on them."""
 
@@ -226,7 +227,7 @@ class _Demands:
     """
 
     ticks: int
-    deadline_ticks: "int | None"
+    deadline_ticks: "(int | None)"
     triggers: int
     must_answer: int
     may_answer: int

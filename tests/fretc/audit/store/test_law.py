@@ -96,11 +96,13 @@ def _fixed(value: dict[str, Any], name: str) -> dict[str, Any]:
     if name == "Estimated":
         return value | {"bound": "0.99"}
     lists = [key for key in ("times_ns", "values", "words", "x", "y") if key in value]
-    if name in ("Series", "WordSeries", "Way", "Words"):
+    if name in ("WindowSamples", "WordSeries", "RobotPath", "EnumChanges"):
         size = min(len(value[key]) for key in lists)
         value |= {key: value[key][:size] for key in lists} | {"starts": [0][:size]}
         value["times_ns"].sort()
-        return value if name == "Way" else {key: value[key] for key in value if key != "starts"}
+        return (
+            value if name == "RobotPath" else {key: value[key] for key in value if key != "starts"}
+        )
     if name == "Surroundings":
         start, end = sorted((value["start_ns"], value["end_ns"]))
         return value | {"start_ns": start, "end_ns": end}
