@@ -58,6 +58,8 @@ class Panel:
     unknown: tuple[SpanMark, ...]
     infinite: tuple[tuple[float, float, str], ...]
     """From, to, and `+inf` or `-inf`."""
+    is_enlarged: bool = False
+    """Whether it repeats a part of the panel before it; values outside it lie on its edge."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,6 +93,10 @@ class Timeline:
     broken: SpanMark | None = None
     cause: str = ""
     """Cause of the violation in words; "" without a violation."""
+    continues: float | None = None
+    """The end of the violation if it is after `end`; None if it is not."""
+    epoch_ns: int | None = None
+    """The time of second 0 on the clock of the log; None without a violation."""
 
 
 @dataclass(frozen=True, slots=True)
