@@ -42,6 +42,7 @@ def drawing(timeline: Timeline, id: str) -> dict[str, Any]:
         at=_instant(timeline),
         first=round(timeline.start, 6),
         last=round(timeline.end, 6),
+        **{"from": timeline.broken.start if timeline.broken else None},
         epoch="" if timeline.epoch_ns is None else f"{timeline.epoch_ns}",
         goes_on=None
         if timeline.continues is None
