@@ -43,6 +43,7 @@ def drawn_lanes(content: Lanes, id: str, anchors: Collection[str]) -> dict[str, 
                 "mark": run.mark,
                 "link": run.anchor if run.anchor in anchors else "runs",
                 "width": round(x(run.length) - _LEFT, 1),
+                "torn": f"M{x(run.length):g} {y}l3 4l-6 4l6 4l-3 4" if run.is_damaged else "",
                 "marks": [_mark(mark, y, x, anchors) for mark in run.marks],
                 "words": [
                     words(lane, y + _ROW + _WORDS * i, x, 4, _LETTER)

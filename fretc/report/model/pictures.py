@@ -161,11 +161,16 @@ class RunLane:
     length: float
     marks: tuple[LaneMark, ...]
     words: tuple[WordLane, ...] = ()
+    is_damaged: bool = False
+    """Whether messages of the log may be lost, so that the run may go on after the lane."""
 
 
 @dataclass(frozen=True, slots=True)
 class Lanes:
-    """One lane per run; `left_out` counts the runs without a lane, none of which is worse."""
+    """One lane per run, or per requirement if there is one run.
+
+    `left_out` counts the runs without a lane, none of which is worse.
+    """
 
     title: str
     end: float
