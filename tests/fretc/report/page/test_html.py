@@ -237,9 +237,12 @@ def test_no_text_leaves_its_place(tmp_path: Path) -> None:
 
 
 def shape(html: str) -> list[tuple[str, list[str]]]:
-    """All elements in their order; a long text of a drawing may have more lines."""
+    """All elements in their order; a long text of a drawing may have more lines.
+
+    Text with other letters than ASCII is isolated, by an element of its own.
+    """
     elements = [(tag, sorted(a)) for tag, a in Page(html).elements]
-    return [each for each in elements if each != ("text", ["x", "y"])]
+    return [each for each in elements if each not in (("text", ["x", "y"]), ("bdi", []))]
 
 
 def _everywhere(folder: Path, text: str) -> str:
@@ -308,4 +311,4 @@ def test_a_hundred_thousand_triggers_fit_into_a_small_page(tmp_path: Path) -> No
     report = report_of(
         known, tmp_path, result(known, "satisfied", ticks=ticks, triggers=triggers, latencies_s=[])
     )
-    assert len(as_html(report)) < 70_000
+    assert len(as_html(report)) < 85_000

@@ -306,7 +306,9 @@ def test_what_is_folded_is_left_out_of_print(visit: Visit, name: str, most: int)
 
 def test_every_mark_has_a_sign_and_a_word(visit: Visit) -> None:
     page = visit("mission")
-    cells = page.locator(".matrix td > a").evaluate_all("e => e.map(a => [a.text, a.ariaLabel.split(': ')[0]])")
+    cells = page.locator(".matrix td > a").evaluate_all(
+        "e => e.map(a => [a.text, a.ariaLabel.split(': ')[0]])"
+    )
     signs = {mark.text: mark.glyph for mark in MARKS}
     assert {word: sign for sign, word in cells}.items() <= signs.items()
     assert "satisfied, suspect" in {word for _, word in cells}
