@@ -84,6 +84,7 @@ VALUES: Mapping[str, Sequence[str]] = {
     "project_column": ("project",),
     "by": ("version",),
     "level": ("0.05",),
+    "reports": ("../{name}/report.html",),
     "duration": ("1",),
     "shell": ("bash",),
     "scenarios": ("nominal",),

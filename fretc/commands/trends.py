@@ -39,8 +39,20 @@ from fretish.diagnostics.messages import diagnostic
 )
 @format_option()
 @path_option("--html", metavar="FILE", help="Also write an HTML page with charts.")
+@click.option(
+    "--reports",
+    default="",
+    metavar="ADDRESS",
+    help="Address of the report of each round, for links of the page; `{name}` is the name of its "
+    "evidence without its ending: --reports '../{name}/report.html'.",
+)
 def trends(
-    evidence: tuple[str, ...], by: str | None, level: float, output_format: str, html: str | None
+    evidence: tuple[str, ...],
+    by: str | None,
+    level: float,
+    output_format: str,
+    html: str | None,
+    reports: str,
 ) -> None:
     """Compare audits: what is newly violated, fixed, flaky or worse.
 
@@ -75,7 +87,7 @@ def trends(
     if html is not None:
         from fretc.trends.page import html as page
 
-        write_outputs({Path(html): page(known)}, evidence)
+        write_outputs({Path(html): page(known, reports)}, evidence)
     if output_format == "json":
         from fretc.trends.json_form import text
 

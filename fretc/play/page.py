@@ -93,8 +93,12 @@ def inset(
         is_compared=bool(before),
         tick=str(requirements[0].clock) if requirements[0].clock else "",
         left_out=[(visible(id), visible(why)) for id, why in left_out],
-        labels=[visible(requirement.id) for requirement in requirements],
+        labels=[
+            visible(f"{requirement.id} {requirement.entry.title}".rstrip())
+            for requirement in requirements
+        ],
         starts=[*_grouped(known)],
+        has_violations=any(start.place for start in known),
         glyphs=[(_WORDS[word], glyph) for word, glyph in _GLYPHS.items() if word in _WORDS],
         version=__version__,
         data=_data(requirements, made, known, before),
@@ -143,6 +147,7 @@ def _data(
     ids = {requirement.id: place for place, requirement in enumerate(requirements)}
     return {
         "most": MOST,
+        "period": _period(requirements[0]),
         "suite": {
             "schema": SCHEMA,
             "fretc": __version__,
@@ -169,10 +174,19 @@ def _data(
                 "about": visible(start.about),
                 "requirements": [ids[id] for id in start.requirements if id in ids],
                 "rows": start.rows,
+                "run": visible(start.place.run) if start.place else "",
+                "number": start.place.number if start.place else 0,
+                "seconds": start.place.seconds if start.place else 0,
             }
             for start in starts
         ],
     }
+
+
+def _period(requirement: FormalizedRequirement) -> float | None:
+    """The seconds of a tick; None if ticks are messages, or no clock is known."""
+    clock = requirement.clock
+    return clock.period / 1e9 if clock is not None and clock.period else None
 
 
 def _requirement(
@@ -185,6 +199,7 @@ def _requirement(
     known = all(name in propositions for name in f.atoms(formula))
     return {
         "label": visible(requirement.id),
+        "title": visible(requirement.entry.title),
         "file": stem(requirement),
         "tested": plain(
             Tested(requirement.id, printed(requirement.written), requirement.fingerprint, ())

@@ -11,6 +11,7 @@ from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
+from types import MappingProxyType
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.python import monitor as emitted
@@ -19,7 +20,7 @@ from fretc.audit.plan import Plan
 from fretc.logs.reader import read
 from fretc.logs.signals.traces import WholeTicks, trace
 from fretc.logs.storage.log_names import path_of
-from fretc.play.starts import MOST, Start, Ticks
+from fretc.play.starts import MOST, RecordedPlace, Start, Ticks
 from fretish.diagnostics.diagnostic import Diagnostic
 from monitors.kernel import Column, Monitor, evaluate
 from monitors.kernel.stepping import literals_of
@@ -73,7 +74,8 @@ def of_log(
     violations = 0
     for requirement in chosen:
         columns = {name: truths.columns[name] for name in requirement.watched}
-        run = RecordedRun(requirement, columns, truths.timeline, recording.name)
+        others = {name: truths.columns[name] for name in names}
+        run = RecordedRun(requirement, columns, truths.timeline, recording.name, others)
         starts += run.starts()
         notes += run.notes()
         violations += run.violations
@@ -127,8 +129,10 @@ class RecordedRun:
         columns: Mapping[str, Column],
         timeline: WholeTicks,
         name: str,
+        others: Mapping[str, Column] = MappingProxyType({}),
     ) -> None:
         self._id, self._name, self._columns = requirement.id, name, columns
+        self._all = {**others, **columns}
         self._monitor: Monitor = load(f"{requirement.id}.py", emitted.text(requirement))
         self._times = timeline.times
         self._ticks = len(timeline.times)
@@ -152,7 +156,11 @@ class RecordedRun:
             about = f"{name}: ticks {first} to {last} of the run; tick 0 here is at {begin:.3f} s"
             if not self._is_alike(first, last, 0):
                 about += "; an obligation from before this window starts at its first tick"
-            yield Start("Recorded runs", name, about, (self._id,), (*self._rows(first, last),))
+            if len(self._all) > len(self._columns):
+                about += "; other requirements are judged as if the run began here"
+            at = RecordedPlace(self._name, number, begin)
+            rows = (*self._rows(first, last),)
+            yield Start("Recorded runs", name, about, (self._id,), rows, at)
 
     def notes(self) -> Iterator[str]:
         """Sentences about violations that are left out."""
@@ -212,7 +220,7 @@ class RecordedRun:
     def _rows(self, first: int, last: int) -> Iterator[Ticks]:
         """Consecutive equal ticks, with their count."""
         rows = [
-            {name: column.at(tick) for name, column in self._columns.items()}
+            {name: column.at(tick) for name, column in self._all.items()}
             for tick in range(first, last + 1)
         ]
         for values, equal in groupby(rows):

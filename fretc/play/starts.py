@@ -24,6 +24,17 @@ MOST = 2_000
 
 
 @dataclass(frozen=True, slots=True)
+class RecordedPlace:
+    """The place of a trace in a recorded run."""
+
+    run: str
+    number: int
+    """Number of the violation of its requirement in the run, from 1."""
+    seconds: float
+    """The time of the first tick of the trace, from the first tick of the run."""
+
+
+@dataclass(frozen=True, slots=True)
 class Start:
     """A trace, with a description."""
 
@@ -33,6 +44,8 @@ class Start:
     requirements: tuple[str, ...]
     """Ids of the requirements that the trace is about."""
     rows: tuple[Ticks, ...]
+    place: RecordedPlace | None = None
+    """None if the trace is not of a recorded run."""
 
     @property
     def ticks(self) -> int:

@@ -8,8 +8,10 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from itertools import groupby
+from pathlib import PurePosixPath
 from statistics import median
 from typing import Any
+from urllib.parse import quote
 
 from fretc.report.model import phrases
 from fretc.report.pictures.scales import RIGHT, WIDTH, Scale, frame, places, step
@@ -21,11 +23,15 @@ from fretc.trends.comparisons import (
     VersionComparison,
     amount,
 )
+from fretc.trends.histories import Round
+from fretc.trends.trends import Item, Trends
+from fretish.diagnostics import status_symbols as signs
+from fretish.reading.natural_order import natural
 
 _CELL, _TALL = 9, 16
 MOST_CELLS = 60
 """The most rounds of a strip; it has the newest ones."""
-_LEFT, _TOP, _BASE = 92, 14, 134
+_LEFT, _TOP = 92, 4
 _MOST_DOTS = 40
 """The most dots of a round: the worst ones, and as many others as fit."""
 _LABELS = 14
@@ -63,49 +69,160 @@ def _in_words(round_outcomes: Sequence[RoundOutcome | None], first: int) -> str:
     return f"rounds {', '.join(parts)}"
 
 
+# All requirements over rounds --------------------------------------------------------------------
+
+_GLYPHS = {
+    RoundOutcome.VIOLATED: signs.BAD,
+    RoundOutcome.OPEN: signs.UNKNOWN,
+    RoundOutcome.SHOWN: signs.GOOD,
+}
+MOST_COLUMNS = 31
+"""The most rounds of a heat map; it has the newest ones."""
+MOST_ROWS = 200
+"""The most requirements of a heat map; it has the worst ones."""
+
+
+def heat_map(trends: Trends, address: str = "") -> dict[str, Any]:
+    """A row for each requirement, the worst first, and a column for each round.
+
+    A cell has the worst outcome of its scenarios.
+
+    Args:
+        trends: the trends.
+        address: of the report of a round, with `{name}` for the name of its evidence; "" without.
+    """
+    first = max(0, len(trends.rounds) - MOST_COLUMNS)
+    rows: dict[str, list[Item]] = defaultdict(list)
+    for item in trends.items:
+        rows[item.requirement].append(item)
+    reports = [_address(address, each) for each in trends.rounds[first:]]
+    return {
+        "columns": [
+            {"name": each.days or each.name, "report": report, "title": each.name}
+            for each, report in zip(trends.rounds[first:], reports, strict=True)
+        ],
+        "rows": [
+            {
+                "id": id,
+                "sentence": trends.sentences.get(id, ""),
+                "cells": [
+                    _heat(id, each.days or each.name, [i.round_outcomes[number] for i in items], to)
+                    for number, (each, to) in enumerate(
+                        zip(trends.rounds[first:], reports, strict=True), first
+                    )
+                ],
+            }
+            for id, items in [*rows.items()][:MOST_ROWS]
+        ],
+        "left": max(0, len(rows) - MOST_ROWS),
+        "older": first,
+    }
+
+
+def _heat(
+    id: str, when: str, outcomes: Sequence[RoundOutcome | None], report: str
+) -> dict[str, Any]:
+    """The worst of some outcomes, with the number of violated scenarios."""
+    known = [outcome for outcome in _GLYPHS if outcome in outcomes]
+    if not known:
+        return {"kind": "", "glyph": "", "text": f"{id} on {when}: not judged", "report": ""}
+    bad = outcomes.count(RoundOutcome.VIOLATED)
+    among = f" in {phrases.times(bad, 'scenario')}" if bad else ""
+    sign = _GLYPHS[known[0]]
+    return {
+        "kind": sign.kind,
+        "glyph": f"{sign.glyph}{bad if bad > 1 else ''}",
+        "text": f"{id} on {when}: {known[0]}{among}",
+        "report": f"{report}#req-{quote(id)}" if report else "",
+    }
+
+
+def _address(address: str, each: Round) -> str:
+    """The address of the report of a round."""
+    return address.replace("{name}", quote(PurePosixPath(each.name).stem)) if address else ""
+
+
 # Numbers over rounds ----------------------------------------------------------------------------
 
+_PANEL = 84
+"""The height of the panel of a scenario."""
+_MOST_PANELS = 8
+"""The most scenarios with a panel; the others share the last one."""
 
-def chart(one: VersionComparison, rounds: int, is_after: Sequence[bool], id: str) -> dict[str, Any]:
-    """The numbers of all runs over the rounds, with the median of each round.
+
+def chart(
+    one: VersionComparison, rounds: Sequence[str], is_after: Sequence[bool], id: str
+) -> dict[str, Any]:
+    """The numbers of all runs over the rounds, with a panel for each scenario.
 
     Args:
         one: the comparison with the values of its runs.
-        rounds: the number of rounds.
+        rounds: the names of the rounds on the axis.
         is_after: for each run, whether it belongs to the newer side of the comparison.
         id: the id of the chart.
     """
     numbers = [value.number for value in one.values]
     low, high = min([0.0, *numbers]), max([0.0, *numbers])
     high = high if high > low else low + 1.0
-    high = -(-high // (width := step((high - low) / 4))) * width
-    x = Scale(0, rounds, _LEFT, WIDTH - RIGHT)
-    y = Scale(low, high, _BASE, _TOP)
+    high = -(-high // (width := step((high - low) / 3))) * width
+    x = Scale(0, len(rounds), _LEFT, WIDTH - RIGHT)
     of_round: dict[int, list[Value]] = defaultdict(list)
-    for value in one.values:
+    panels: dict[str, list[Value]] = defaultdict(list)
+    scenarios = sorted({str(value.scenario) for value in one.values}, key=natural)
+    for value in sorted(one.values, key=lambda value: scenarios.index(str(value.scenario))):
         of_round[value.round].append(value)
-    every = max(1, -(-rounds // _LABELS))
+        place = scenarios.index(str(value.scenario))
+        fits = place < _MOST_PANELS - 1 or len(scenarios) <= _MOST_PANELS
+        panels[str(value.scenario) if fits else "other scenarios"].append(value)
+    every = max(1, -(-len(rounds) // _LABELS))
+    base = _TOP + _PANEL * len(panels)
     return frame(
         id,
         f"{one.measure.ids}: {one.measure}",
         _text(one, of_round),
         x,
-        _BASE + 38,
-        base=_BASE,
-        dots=[
-            {"x": x(number + share), "y": y(value.number), "is_after": is_after[value.run]}
-            for number, values in of_round.items()
-            for share, value in _spread(_chosen(values, one.measure))
+        base + 46,
+        base=base,
+        worse=f"worse {'↓' if one.measure.is_better_larger else '↑'}",
+        panels=[
+            _panel(name, values, one, is_after, x, Scale(low, high, top + _PANEL - 8, top + 20))
+            for number, (name, values) in enumerate(panels.items())
+            for top in [_TOP + _PANEL * number]
         ],
-        medians=[
-            (x(number + 0.15), x(number + 0.85), y(median(value.number for value in values)))
-            for number, values in sorted(of_round.items())
-        ],
-        ticks=[(x(number + 0.5), str(number + 1)) for number in range(0, rounds, every)],
-        marks=[
-            (y(place), phrases.value(place, one.measure.unit)) for place in places(low, high, 4)
-        ],
+        ticks=[(x(number + 0.5), rounds[number]) for number in range(0, len(rounds), every)],
     )
+
+
+def _panel(
+    name: str,
+    values: Sequence[Value],
+    one: VersionComparison,
+    is_after: Sequence[bool],
+    x: Scale,
+    y: Scale,
+) -> dict[str, Any]:
+    """The numbers of one scenario; the bound of a margin is 0."""
+    of_round: dict[int, list[Value]] = defaultdict(list)
+    for value in values:
+        of_round[value.round].append(value)
+    return {
+        "name": name,
+        "y": y.end - 6,
+        "dots": [
+            {"x": x(number + share), "y": y(value.number), "is_after": is_after[value.run]}
+            for number, some in of_round.items()
+            for share, value in _spread(_chosen(some, one.measure))
+        ],
+        "medians": [
+            (x(number + 0.15), x(number + 0.85), y(median(value.number for value in some)))
+            for number, some in sorted(of_round.items())
+        ],
+        "bound": y(0.0) if one.measure.is_better_larger else None,
+        "marks": [
+            (y(place), phrases.value(place, one.measure.unit))
+            for place in places(y.first, y.last, 3)
+        ],
+    }
 
 
 def _chosen(values: Sequence[Value], measure: ComparedMeasure) -> Sequence[Value]:

@@ -13,7 +13,7 @@ from fretc.audit.selection.choice import in_words
 from fretc.report.model import phrases
 from fretc.report.page.html import hash_source, visible_texts
 from fretc.trends.changes import RED, VerdictChange
-from fretc.trends.charts import chart, strip
+from fretc.trends.charts import chart, heat_map, strip
 from fretc.trends.comparisons import ComparisonFinding, VersionComparison
 from fretc.trends.trends import Group, Item, Trends, arrived, gone, not_selected
 from fretish.diagnostics import status_symbols as signs
@@ -51,11 +51,20 @@ _LISTS = (
     _List("fixed", "Fixed",
           "Violated in the last round with a known outcome, shown now.", (VerdictChange.FIXED,),
           signs.GOOD),
+    _List("never", "Never shown",
+          "No round has shown them, and none has violated them.", (VerdictChange.NEVER_SHOWN,),
+          signs.UNKNOWN),
 )  # fmt: skip
 
 
-def html(trends: Trends) -> str:
-    """The text of the whole file."""
+def html(trends: Trends, reports: str = "") -> str:
+    """The text of the whole file.
+
+    Args:
+        trends: the trends.
+        reports: the address of the report of a round, with `{name}` for the name of its
+            evidence; "" if the page has no links to reports.
+    """
     style = render("report/style.css.j2") + render("trends/style.css.j2")
     lists = [_listed(change_list, trends.of(*change_list.kinds)) for change_list in _LISTS]
     flaky = [item for item in trends.items if item.flaky]
@@ -83,6 +92,8 @@ def html(trends: Trends) -> str:
                 "facts": _facts(trends),
                 "rounds": [_round(i, each) for i, each in enumerate(trends.rounds, 1)],
                 "by": trends.by,
+                "heat": heat_map(trends, reports),
+                "has_days": any(each.days != each.name for each in trends.rounds),
                 "lists": [change_list for change_list in lists if change_list["rows"]],
                 "flaky": {
                     "rows": _rows(flaky[:_MOST_RED]),
@@ -138,7 +149,8 @@ def _headline(trends: Trends) -> str:
 def _facts(trends: Trends) -> list[str]:
     newest = trends.rounds[-1]
     versions = phrases.some([f"version {version}" for version in newest.versions], 3)
-    about = ", ".join(filter(None, [newest.days, versions, phrases.times(newest.runs, "run")]))
+    day = "" if newest.days == newest.name else newest.days
+    about = ", ".join(filter(None, [day, versions, phrases.times(newest.runs, "run")]))
     steady, never = len(trends.of(VerdictChange.STEADY)), len(trends.of(VerdictChange.NEVER_SHOWN))
     return [
         f"Newest round: {phrases.place(newest.name)} ({about}).",
@@ -209,7 +221,5 @@ def _now(item: Item) -> str:
 
 def _charts(trends: Trends, some: Sequence[VersionComparison], kind: str) -> list[dict[str, Any]]:
     after = trends.is_after
-    return [
-        chart(one, len(trends.rounds), after, f"{kind}-{number}")
-        for number, one in enumerate(some, 1)
-    ]
+    names = [each.days[5:10] or str(number) for number, each in enumerate(trends.rounds, 1)]
+    return [chart(one, names, after, f"{kind}-{number}") for number, one in enumerate(some, 1)]

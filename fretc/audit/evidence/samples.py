@@ -56,7 +56,10 @@ class WordSeries(Record, frozen=True):
 
 
 class Surroundings(Record, frozen=True):
-    """The signals from 1 s before the trigger to 1 s after the deadline, or around tick `first`."""
+    """The signals from 2 s before the trigger of a deadline to 2 s after the deadline.
+
+    Without a deadline, they are those around tick `first`.
+    """
 
     start_ns: Whole
     end_ns: Whole

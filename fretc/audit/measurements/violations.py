@@ -17,7 +17,7 @@ from fretc.logs.signals.enum_values import enum_value
 from fretc.logs.signals.samples import Recording, Samples, Values, scaled
 from monitors.kernel import Outcome
 
-SURROUNDINGS = 10**9
+SURROUNDINGS = 2 * 10**9
 """Nanoseconds before the trigger and after the deadline for which evidence keeps samples."""
 MOST_SAMPLES = 50
 """The most samples of one signal around one violation."""
@@ -104,7 +104,13 @@ def violations(
         due = at(deadline) if deadline is not None and deadline < outcome.ticks else None
         begin, broken = None if trigger is None else at(trigger), at(first)
         window = (
-            _window(begin or broken, due or broken, broken, recording, signals)
+            _window(
+                begin if begin and horizon is not None else broken,
+                due or broken,
+                broken,
+                recording,
+                signals,
+            )
             if place < MOST_WINDOWS
             else None
         )

@@ -100,8 +100,20 @@ def _plan_of_all(
     chosen = {*worst_runs(tallies)}
     left = [tally for run, tally in tallies.items() if run not in chosen]
     of = _of_runs(active, details, chosen)
-    title = "All requirements, a lane for each run"
-    return plan(title, of, left=left, courses=_courses(details), ranked=bool(left))
+    is_single = len(tallies) == 1
+    title = "One run, a lane for each requirement"
+    if not is_single:
+        title = "All requirements, a lane for each run"
+    damaged = {run.anchor for run in details.runs.values() if not run.facts.health.intact}
+    return plan(
+        title,
+        of,
+        left=left,
+        courses=_courses(details),
+        ranked=bool(left),
+        damaged=damaged,
+        by_requirement=is_single,
+    )
 
 
 def _tallies(active: Sequence[Assessment], details: Details) -> Mapping[str, RunTally]:

@@ -6,7 +6,7 @@ lane are counted; none of them is worse than a run with a lane.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import inf
 from types import MappingProxyType
@@ -62,6 +62,9 @@ class _Lane:
     """Index of the result with the signals of words; None if these are not shown."""
     known: Mapping[int, Known] = field(default_factory=dict)
     """Index of a result → its data, for results that were read."""
+    requirement: str = ""
+    """The requirement of a lane of one requirement; "" if the lane is of a run."""
+    is_damaged: bool = False
 
     @property
     def first(self) -> ResultRow:
@@ -69,7 +72,7 @@ class _Lane:
 
     @property
     def name(self) -> str:
-        return f"{self.first.run_label} ({self.first.run_file})"
+        return self.requirement or f"{self.first.run_label} ({self.first.run_file})"
 
     @property
     def mark(self) -> Mark:
@@ -148,6 +151,8 @@ def plan(
     courses: Mapping[str, int] = NO_COURSES,
     *,
     ranked: bool = False,
+    damaged: Collection[str] = (),
+    by_requirement: bool = False,
 ) -> LanePlan:
     """Choose the runs that have a lane: all, or the worst.
 
@@ -160,11 +165,22 @@ def plan(
         left: runs that get no lane; none of them is worse than the others.
         courses: run → index of the result with its signals of words.
         ranked: whether to sort by verdict even if all runs get a lane.
+        damaged: the runs whose logs may have lost messages.
+        by_requirement: whether each requirement has a lane, because there is one run.
     """
-    grouped: dict[str, list[ResultRow]] = {}
+    grouped: dict[tuple[str, str], list[ResultRow]] = {}
     for result in results:
-        grouped.setdefault(result.run, []).append(result)
-    every = [_Lane(tuple(of), courses.get(run)) for run, of in grouped.items()]
+        requirement = result.requirement if by_requirement else ""
+        grouped.setdefault((result.run, requirement), []).append(result)
+    every = [
+        _Lane(
+            tuple(of),
+            None if number and by_requirement else courses.get(run),
+            requirement=requirement,
+            is_damaged=run in damaged,
+        )
+        for number, ((run, requirement), of) in enumerate(grouped.items())
+    ]
     sort = ranked or len(every) > most
     ordered = sorted(every, key=worst_first) if sort else every
     return LanePlan(title, tuple(ordered[:most]), (*ordered[most:], *left), marks, note)
@@ -207,13 +223,14 @@ def _lane(lane: _Lane, nearest: float) -> RunLane:
     ]
     first = lane.first
     return RunLane(
-        first.run,
-        first.run_label,
+        first.anchor if lane.requirement else first.run,
+        lane.requirement or first.run_label,
         first.run_file,
         lane.mark,
         lane.length,
         tuple(merged),
         lane.words,
+        lane.is_damaged,
     )
 
 
@@ -297,8 +314,9 @@ def _in_words(lanes: Sequence[_Lane]) -> str:
     bad = sorted((lane for lane in lanes if any(lane.count)), key=worst_first)
     named = [f"{lane.name}: {_counted([lane])}" for lane in bad[:_NAMED]]
     rest = _counted(bad[_NAMED:]) if len(bad) > _NAMED else ""
-    more = f"{phrases.times(len(bad) - _NAMED, 'more run')}: {rest}" if rest else ""
+    thing = "requirement" if any(lane.requirement for lane in lanes) else "run"
+    more = f"{phrases.times(len(bad) - _NAMED, f'more {thing}')}: {rest}" if rest else ""
     calm = len(lanes) - len(bad)
     parts = [*named, *([more] if more else [])]
-    none = f"{phrases.times(calm, 'run')} without such a tick" if calm else ""
+    none = f"{phrases.times(calm, thing)} without such a tick" if calm else ""
     return f"{'; '.join([*parts, *([none] if none else [])])}."

@@ -6,7 +6,7 @@ Coordinates are in units of a drawing 720 wide.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Sequence
-from math import floor, log10
+from math import dist, floor, log10
 from typing import Any
 
 from fretc.report.across.uses import percent
@@ -43,6 +43,7 @@ def drawn_lanes(content: Lanes, id: str, anchors: Collection[str]) -> dict[str, 
                 "mark": run.mark,
                 "link": run.anchor if run.anchor in anchors else "runs",
                 "width": round(x(run.length) - _LEFT, 1),
+                "torn": f"M{x(run.length):g} {y}l3 4l-6 4l6 4l-3 4" if run.is_damaged else "",
                 "marks": [_mark(mark, y, x, anchors) for mark in run.marks],
                 "words": [
                     words(lane, y + _ROW + _WORDS * i, x, 4, _LETTER)
@@ -147,6 +148,8 @@ _TALLEST = 420
 _BAR = 0.25
 """Maximum length of the scale bar, as a fraction of the width."""
 
+_FINE = 1.2
+"""Minimum distance of the points of a path, in units of the drawing."""
 _Place = Callable[[float, float], tuple[float, float]]
 """Converts a position in metres into coordinates."""
 
@@ -212,10 +215,14 @@ def _link(mark: PlaceMark | LaneMark, anchors: Collection[str]) -> str:
 
 
 def _line(line: Sequence[tuple[float, float]], at: _Place) -> str:
-    places = list(dict.fromkeys(at(*point) for point in line)) if len(line) == 2 else []
-    places = places or [at(*point) for point in line]
+    """The path of a line, without points nearer than `_FINE` to the one before."""
+    places = [at(*point) for point in line]
     first, *others = places
-    rest = "".join(f"L{x:g} {y:g}" for x, y in others) or "h0"
+    kept, last = [first], len(others)
+    for number, place in enumerate(others, 1):
+        if dist(place, kept[-1]) >= _FINE or (number == last and place != kept[-1]):
+            kept.append(place)
+    rest = "L" + " ".join(f"{x:g} {y:g}" for x, y in kept[1:]) if len(kept) > 1 else "h0"
     return f"M{first[0]:g} {first[1]:g}{rest}"
 
 

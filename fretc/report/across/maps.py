@@ -13,7 +13,7 @@ from fretc.report.model import phrases
 from fretc.report.model.pictures import PlaceMark, RunMap
 from fretc.report.model.results import ResultRow
 
-MOST_MAPS = 12
+MOST_MAPS = 8
 _NEAR = 0.02
 """Violations nearer than this fraction of the map are merged into one mark."""
 _NAMED = 3

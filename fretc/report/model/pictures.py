@@ -58,6 +58,8 @@ class Panel:
     unknown: tuple[SpanMark, ...]
     infinite: tuple[tuple[float, float, str], ...]
     """From, to, and `+inf` or `-inf`."""
+    is_enlarged: bool = False
+    """Whether it repeats a part of the panel before it; values outside it lie on its edge."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,6 +93,10 @@ class Timeline:
     broken: SpanMark | None = None
     cause: str = ""
     """Cause of the violation in words; "" without a violation."""
+    continues: float | None = None
+    """The end of the violation if it is after `end`; None if it is not."""
+    epoch_ns: int | None = None
+    """The time of second 0 on the clock of the log; None without a violation."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,11 +161,16 @@ class RunLane:
     length: float
     marks: tuple[LaneMark, ...]
     words: tuple[WordLane, ...] = ()
+    is_damaged: bool = False
+    """Whether messages of the log may be lost, so that the run may go on after the lane."""
 
 
 @dataclass(frozen=True, slots=True)
 class Lanes:
-    """One lane per run; `left_out` counts the runs without a lane, none of which is worse."""
+    """One lane per run, or per requirement if there is one run.
+
+    `left_out` counts the runs without a lane, none of which is worse.
+    """
 
     title: str
     end: float

@@ -20,6 +20,7 @@ from fretc.report.model.sets import SetConflict
 from fretc.report.model.views import ReportView
 from fretc.report.page.matrix import Picture, picture
 from fretc.report.page.selection import PageContent, selection, slimmed
+from fretc.report.page.sheets import sheet_style
 from fretc.report.page.tree import MOST, NAMES, Placement, grouped, pieces, placements, shortened
 from fretc.report.pictures.plots import drawing, histogram, probability
 from fretc.report.sections.argument import argument
@@ -60,7 +61,7 @@ def html(
     choice = selection(report, details)
     page = slimmed(report, choice)
     matrix = picture(report, choice.anchors)
-    script, style = render(_SCRIPT), render(_STYLE)
+    script, style, sheets = render(_SCRIPT), render(_STYLE), sheet_style(report)
     return render(
         "report/report.html.j2",
         report=visible_texts(page),
@@ -82,7 +83,8 @@ def html(
         most_runs=_MOST_RUNS,
         inset=inset,
         script_hashes=[hash_source(script), *(inset.scripts if inset else ())],
-        style_hashes=[hash_source(style), *([inset.style] if inset else ())],
+        sheets=sheets,
+        style_hashes=[hash_source(style), hash_source(sheets), *([inset.style] if inset else ())],
     )
 
 

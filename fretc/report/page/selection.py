@@ -5,19 +5,21 @@ The page states how many unsatisfied runs it leaves out; the evidence file has t
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice, zip_longest
 
 from fretc.audit.evidence.verdicts import SUSPECT
 from fretc.report.model import phrases
+from fretc.report.model.pictures import Timeline
 from fretc.report.model.results import ResultRow, ResultView
 from fretc.report.model.views import ReportView, RequirementView, RunSummary, RunView
 from fretc.report.sections.details import Details
 
 COMPACT = 1_000
 """Above this number of results, only runs that are not satisfied have a row."""
-DETAILED, PICTURES = 100, 30
+DETAILED, PICTURES = 100, 24
 """Maximum results with all details, and maximum pictures of violations, on one page."""
 _FEW_DETAILED, _FEW_PICTURES = 40, 20
 """Maximum results with all details, and maximum pictures, on a compact page."""
@@ -186,15 +188,31 @@ def _detailed(views: Sequence[RequirementView], most: int) -> Mapping[str, Resul
 
 
 def _shortened(results: Sequence[ResultView], limits: _Limits) -> Mapping[str, ResultView]:
-    """The results in their order, with as many pictures and violations as the limits allow."""
-    short: dict[str, ResultView] = {}
-    pictures = limits.pictures
-    for result in results:
-        kept = result.timelines[:pictures]
-        pictures -= len(kept)
-        violations = result.violations[: limits.violations]
-        short[result.anchor] = replace(result, timelines=kept, violations=violations)
-    return short
+    """The results in their order, with as many pictures and violations as the limits allow.
+
+    The first violation of each result comes first, then runs without one, then other violations.
+    """
+    drawn = [[*filter(_has_content, result.timelines)] for result in results]
+    turns = [
+        [(number, 0) for number, result in enumerate(results) if result.violations_total],
+        [(number, 0) for number, result in enumerate(results) if not result.violations_total],
+        [(number, i) for i in range(1, limits.pictures) for number in range(len(results))],
+    ]
+    wanted = [(number, i) for turn in turns for number, i in turn if i < len(drawn[number])]
+    kept = Counter(number for number, _ in wanted[: limits.pictures])
+    return {
+        result.anchor: replace(
+            result,
+            timelines=tuple(drawn[number][: kept[number]]),
+            violations=result.violations[: limits.violations],
+        )
+        for number, result in enumerate(results)
+    }
+
+
+def _has_content(timeline: Timeline) -> bool:
+    """Whether the picture has more than an empty axis."""
+    return bool(timeline.panels or timeline.words or any(lane.marks for lane in timeline.lanes))
 
 
 def _section_runs(

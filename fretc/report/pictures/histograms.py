@@ -166,7 +166,7 @@ def _margins(runs: Iterable[Sequence[ThresholdRecord]]) -> Iterator[Histogram]:
             grouped[name].append(threshold)
     for (proposition, signal, operator, bound, unit), same in grouped.items():
         margins = [each.margin for each in same if each.margin is not None]
-        if len(margins) < 2:
+        if len(margins) < 2 or _is_truth(unit, bound, same):
             continue
         crossed = sum(each.comparison == "crossed" for each in same)
         bins = _bins(margins, [0.0], _above)
@@ -178,6 +178,12 @@ def _margins(runs: Iterable[Sequence[ThresholdRecord]]) -> Iterator[Histogram]:
         )
         title = f"Least margin of each run to {comparison} ({proposition})"
         yield Histogram(title, unit, bins, 0.0, "threshold", text, crossed)
+
+
+def _is_truth(unit: str, bound: float, same: Sequence[ThresholdRecord]) -> bool:
+    """Whether the signal is only 0 or 1 and compared with 0.5; such margins say nothing."""
+    ends = {end for each in same for end in (each.least, each.greatest) if end is not None}
+    return not unit and bound == 0.5 and ends <= {0.0, 1.0}
 
 
 def _crossed(runs: int) -> str:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from fretc.report.model.phrases import decimal, whole
+from fretc.report.model.phrases import decimal, instant, whole
 from fretc.report.model.pictures import Histogram, NamedInstant, Panel, SignalPiece, Timeline
 from fretc.report.model.results import ProbabilityView
 from fretc.report.pictures.scales import RIGHT, WIDTH, Scale, frame, words
@@ -26,7 +26,8 @@ _HEAD, _HIGH = 18, 72
 def drawing(timeline: Timeline, id: str) -> dict[str, Any]:
     """The layout of a timeline; the panels stand above the lanes, on the same axis."""
     x = Scale(timeline.start, timeline.end, _LEFT, WIDTH - RIGHT)
-    top = (_FLAGS if timeline.flags else 0) + _TOP
+    rows = len(timeline.flags) + (timeline.continues is not None)
+    top = (_FLAGS + 14 * max(0, rows - 2) if rows else 0) + _TOP
     words_from = top + (_HEAD + _HIGH) * len(timeline.panels) + (10 if timeline.panels else 0)
     lanes_from = words_from + _WORDS * len(timeline.words)
     axis = lanes_from + _ROW * len(timeline.lanes)
@@ -38,6 +39,15 @@ def drawing(timeline: Timeline, id: str) -> dict[str, Any]:
         x,
         axis + _AXIS,
         cause=timeline.cause,
+        at=_instant(timeline),
+        first=round(timeline.start, 6),
+        last=round(timeline.end, 6),
+        **{"from": timeline.broken.start if timeline.broken else None},
+        epoch="" if timeline.epoch_ns is None else f"{timeline.epoch_ns}",
+        goes_on=None
+        if timeline.continues is None
+        else (f"goes on to {decimal(timeline.continues)} s", 12 + 14 * len(timeline.flags)),
+        edge=_torn(x.end, top, axis),
         top=top,
         axis=axis,
         bar=_BAR,
@@ -62,6 +72,23 @@ def drawing(timeline: Timeline, id: str) -> dict[str, Any]:
     )
 
 
+_DATED = 946_684_800 * 10**9
+"""The year 2000; a clock before it counts from another time, such as the start of a simulation."""
+
+
+def _instant(timeline: Timeline) -> str:
+    """The date and time of the first violated tick; "" without a violation or a date."""
+    if timeline.broken is None or timeline.epoch_ns is None or timeline.epoch_ns < _DATED:
+        return ""
+    return instant(timeline.epoch_ns + round(timeline.broken.start * 1e9))
+
+
+def _torn(x: float, top: int, base: int) -> str:
+    """The path of a zigzag line, where a picture ends before its violation."""
+    steps = "".join(f"l{4 if i % 2 == 0 else -4} 6" for i in range((base - top) // 6))
+    return f"M{x - 2:g} {top}{steps}"
+
+
 def _flag(flag: NamedInstant, y: int, scale: Scale) -> dict[str, Any]:
     """A flag in a row of its own, so that labels never overlap."""
     x = scale(flag.at)
@@ -77,10 +104,15 @@ def _flag(flag: NamedInstant, y: int, scale: Scale) -> dict[str, Any]:
 def _panel(panel: Panel, y: int, x: Scale) -> dict[str, Any]:
     """A signal over the timeline: `bands` are outlines of envelopes, `lines` are lines."""
     top, base = y + _HEAD, y + _HEAD + _HIGH
-    at = Scale(panel.low, panel.high, base, top)
+    at = Scale(panel.low, panel.high, base, top, digits=2)
     levels = [(at(level.value), level.label) for level in panel.levels]
     return {
-        "name": f"{panel.signal}{f' ({panel.unit})' if panel.unit else ''}",
+        "name": f"{panel.signal}{f' ({panel.unit})' if panel.unit else ''}"
+        + (", enlarged at the bound" if panel.is_enlarged else ""),
+        "signal": "" if panel.is_enlarged else panel.signal,
+        "unit": panel.unit,
+        "low": f"{panel.low:.6g}",
+        "high": f"{panel.high:.6g}",
         "y": y + 12,
         "top": top,
         "height": _HIGH,
@@ -100,13 +132,17 @@ def _panel(panel: Panel, y: int, x: Scale) -> dict[str, Any]:
 
 
 def _line(piece: SignalPiece, scale: Scale, at: Scale) -> str:
-    """The path of a step line."""
+    """The path of a step line; equal values one after the other are one step."""
     path: list[str] = []
+    last = None
     for seconds, least, greatest in piece.points:
-        x, y = scale(seconds), at(greatest)
+        x, y, low = scale(seconds), at(greatest), at(least)
+        if (y, low) == (last, last):
+            continue
         path.append(f"H{x:g}V{y:g}" if path else f"M{x:g} {y:g}")
-        if least != greatest:
-            path.append(f"V{at(least):g}")
+        if low != y:
+            path.append(f"V{low:g}")
+        last = low
     return "".join([*path, f"H{scale(piece.end):g}"])
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -55,7 +56,14 @@ class Scale:
 
     def ticks(self, most: int = _TICKS) -> list[tuple[float, str]]:
         """Coordinate and label of about `most` round numbers."""
-        return [(self(place), decimal(place)) for place in places(self.first, self.last, most)]
+        found = places(self.first, self.last, most)
+        return [(self(place), _label(place, found)) for place in found]
+
+
+def _label(place: float, among: Sequence[float]) -> str:
+    """The number with enough digits to tell it from its neighbours."""
+    width = among[1] - among[0] if len(among) > 1 else 1.0
+    return decimal(place) if width >= 1e-3 or place == 0 else f"{round(place / width) * width:.3g}"
 
 
 def places(start: float, end: float, most: int) -> list[float]:

@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from math import inf, isinf
 from statistics import median
+from types import MappingProxyType
 from typing import TypeVar
 
+from compiler.formalization.formalized import FormalizedRequirement
 from fretc.audit.evidence.samples import SignalSamples
 from fretc.audit.evidence.schema import Result, ThresholdRecord, Violation
 from fretc.audit.measurements.violations import EVEN_SAMPLES
 from fretc.report.model.pictures import Panel, SignalPiece, SpanMark, ThresholdLine, WordLane
-from fretish.bindings.amounts import exact
+from fretish import expressions as e
+from fretish.bindings.amounts import exact, exact_duration
+from fretish.printer import expression
 
 MOST_PANELS = 4
 """Maximum number of signals in a picture; signals with a threshold come first."""
@@ -20,6 +25,8 @@ _COLUMNS = 240
 """The resolution of a panel: samples in one column are one stroke, least to greatest."""
 _THINNED = 2.5
 """A gap between thinned samples is at least this many times their median distance."""
+_SMALL = 0.04
+"""A crossing of less than this share of the panel's height has an enlarged panel."""
 _EMPTY = 1e-9
 _FAR = 1e300
 """The end of every axis, so that its length is a finite 64-bit float."""
@@ -29,10 +36,37 @@ Known = tuple[float, float, float | None]
 """(from, to, value in this interval or None)."""
 
 
+def persistences(requirement: FormalizedRequirement | None) -> Mapping[tuple[str, str], str]:
+    """(proposition, expression over signals) → ` for 500 ms`, from the bindings.
+
+    Args:
+        requirement: the requirement that was judged; None if unknown.
+    """
+    declared = requirement.declarations if requirement else None
+    if declared is None:
+        return {}
+    return {
+        (name, expression(side)): f" for {exact_duration(part.duration / 1e9)}"
+        for name, proposition in declared.propositions.items()
+        for part in e.parts(proposition.expression)
+        if isinstance(part, e.Persistence)
+        for compared in e.parts(part.arg)
+        if isinstance(compared, e.Comparison)
+        for side in (compared.left, compared.right)
+    }
+
+
 def panels(
-    violation: Violation, result: Result, ages: Mapping[str, float], start: float, end: float
+    violation: Violation,
+    result: Result,
+    ages: Mapping[str, float],
+    start: float,
+    end: float,
+    held: Mapping[tuple[str, str], str] = MappingProxyType({}),
 ) -> tuple[Panel, ...]:
     """A panel for each of the first signals of the window.
+
+    A signal that crosses a bound by little has a second, enlarged panel.
 
     Args:
         violation: a violation without a window has no panel.
@@ -40,13 +74,14 @@ def panels(
         ages: age limit of each signal in seconds; a signal without one has no limit.
         start: of the picture, in seconds from the first tick.
         end: of the picture.
+        held: for how long a comparison must hold (`persistences`).
     """
     if violation.window is None:
         return ()
     bounds = {name: _bounds(name, result) for name in violation.window.samples}
     names = sorted(bounds, key=lambda name: not bounds[name])[:MOST_PANELS]
     return tuple(
-        _panel(name, result.units.get(name, ""), bounds[name], stretches, start, end)
+        panel
         for name in names
         for stretches in [
             _stretches(
@@ -57,7 +92,37 @@ def panels(
                 violation.first.seconds,
             )
         ]
+        for levels in [tuple(dict.fromkeys(_levels(name, bounds[name], held)))]
+        for drawn in [_panel(name, result.units.get(name, ""), levels, stretches, start, end)]
+        for panel in (drawn, *_enlarged(drawn, violation))
     )
+
+
+def _enlarged(panel: Panel, violation: Violation) -> Iterator[Panel]:
+    """The same panel around a bound that the signal crosses by too little to be seen."""
+    first, last = violation.first.seconds, violation.last.seconds
+    inside = [
+        number
+        for piece in panel.pieces
+        for (begin, least, greatest), after in zip(
+            piece.points, (*(point[0] for point in piece.points[1:]), piece.end), strict=True
+        )
+        if after > first and begin <= last
+        for number in (least, greatest)
+    ]
+    outside = [number for piece in panel.pieces for _, *ends in piece.points for number in ends]
+    for level in panel.levels:
+        depths = [
+            max(sign * (number - level.value) for number in inside)
+            for sign in (1, -1)
+            if inside and min(sign * (number - level.value) for number in outside) < 0
+        ]
+        depth = min((each for each in depths if each > 0), default=0.0)
+        if 0 < depth < _SMALL * (panel.high - panel.low):
+            low, high = level.value - 4 * depth, level.value + 4 * depth
+            near = tuple(each for each in panel.levels if low <= each.value <= high)
+            yield replace(panel, low=low, high=high, levels=near, is_enlarged=True)
+            return
 
 
 def word_lanes(
@@ -97,9 +162,12 @@ def _bounds(signal: str, result: Result) -> tuple[ThresholdRecord, ...]:
     )
 
 
-def _levels(signal: str, bounds: Sequence[ThresholdRecord]) -> Iterator[ThresholdLine]:
+def _levels(
+    signal: str, bounds: Sequence[ThresholdRecord], held: Mapping[tuple[str, str], str]
+) -> Iterator[ThresholdLine]:
     for bound in bounds:
-        label = f"{bound.operator} {exact(bound.bound, bound.unit)}"
+        time = held.get((bound.proposition, bound.signal), "")
+        label = f"{bound.operator} {exact(bound.bound, bound.unit)}{time}"
         if bound.signal == signal:
             yield ThresholdLine(bound.bound, label)
         else:
@@ -144,12 +212,11 @@ def _longest(samples: SignalSamples[T], age: float) -> float:
 def _panel(
     signal: str,
     unit: str,
-    bounds: Sequence[ThresholdRecord],
+    levels: tuple[ThresholdLine, ...],
     stretches: Sequence[Known],
     start: float,
     end: float,
 ) -> Panel:
-    levels = tuple(dict.fromkeys(_levels(signal, bounds)))
     finite = [v for _, _, v in stretches if v is not None and not isinf(v)]
     low, high = _range([*finite, *(level.value for level in levels)])
     width = (end - start) / _COLUMNS

@@ -14,7 +14,7 @@ from fretc.report.model.causes import causes, falsity, in_words
 from fretc.report.model.phrases import duration, joined, seconds, times, value
 from fretc.report.model.pictures import Lane, NamedInstant, Panel, SpanMark, Timeline, WordLane
 from fretc.report.pictures.first_tick import reading
-from fretc.report.pictures.signals import left_out, panels, word_lanes
+from fretc.report.pictures.signals import left_out, panels, persistences, word_lanes
 
 DETAIL = 400
 """Marks nearer than 1/400 of the picture are merged, which bounds their number."""
@@ -22,6 +22,10 @@ DRAWN = 6
 """Maximum number of violations of one result with a picture; the report lists the others."""
 _AROUND = 10
 """Minimum number of ticks before and after a violation."""
+_MARGIN = 2.0
+"""Minimum seconds before and after a violation."""
+_LONGEST = 20.0
+"""Maximum seconds of a violation in its picture."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,15 +78,17 @@ def _explained(
     requirement: FormalizedRequirement | None,
 ) -> Timeline:
     """The timeline with signals, trigger, deadline, the violating stretch, and the cause."""
-    drawings = panels(violation, result, ages, plain.start, plain.end)
+    drawings = panels(violation, result, ages, plain.start, plain.end, persistences(requirement))
     lanes = word_lanes(violation, ages, plain.start, plain.end)
     broken = _violated(violation, tick)
     why = cause(violation, result, ages, requirement)
     hidden = left_out(violation, drawings, lanes)
+    is_cut = broken.end > plain.end + tick / 2
     sentences = [
         why,
         plain.text,
-        *(_panel_in_words(panel) for panel in drawings),
+        f"The violation goes on to {seconds(broken.end)}." if is_cut else "",
+        *(_panel_in_words(panel) for panel in drawings if not panel.is_enlarged),
         *(_signal_in_words(lane) for lane in lanes),
         f"Not drawn: {joined(hidden)}." if hidden else "",
     ]
@@ -91,9 +97,11 @@ def _explained(
         text=" ".join(filter(None, sentences)),
         panels=drawings,
         words=lanes,
-        flags=tuple(_flags(violation)),
+        flags=tuple(flag for flag in _flags(violation) if plain.start <= flag.at <= plain.end),
         broken=_rounded(SpanMark(broken.start, broken.end, 1)),
         cause=why,
+        continues=round(broken.end, 6) if is_cut else None,
+        epoch_ns=violation.start_ns - round(violation.start_s * 1e9),
     )
 
 
@@ -173,10 +181,18 @@ def _total(stretches: Sequence[tuple[float, float]]) -> str:
 
 
 def _around(violation: Violation, tick: float) -> TimeInterval:
-    first = violation.trigger or violation.first
-    start, end = min(first.seconds, violation.first.seconds), violation.last.seconds + tick
-    margin = max(_AROUND * tick, (end - start) / 8, 1e-3)
-    stretch = TimeInterval(max(0.0, start - margin), max(end, start) + margin)
+    """The time from the trigger, if it is the start of a deadline or near, to the end.
+
+    A picture of a long violation ends a margin after its first tick.
+    """
+    broken, trigger = violation.first.seconds, violation.trigger
+    margin = max(_AROUND * tick, _MARGIN)
+    start = broken
+    if trigger and (violation.deadline or broken - trigger.seconds <= margin):
+        start = min(trigger.seconds, broken)
+    margin = max(margin, (broken - start) / 8)
+    end = min(max(broken, violation.last.seconds) + tick, broken + _LONGEST)
+    stretch = TimeInterval(max(0.0, start - margin), end + margin)
     window = violation.window
     if window is None or not (window.samples or window.words):
         return stretch

@@ -152,9 +152,9 @@ def test_the_cursor_says_why(opened: Open) -> None:
     assert (
         "open since tick 1, due by tick 3, in 1 tick; not answered: violated at tick 3." in says[2]
     )
-    assert "`stopped` is false at ticks 1 to 2." in says[2]
+    assert "stopped is false at ticks 1 to 2." in says[2]
     assert "violated since tick 3. Triggered at tick 1, due by tick 3." in says[4]
-    assert "`stopped` is false at ticks 1 to 3." in says[4]
+    assert "stopped is false at ticks 1 to 3." in says[4]
 
 
 def test_numbers_are_typed_and_comparisons_follow(opened: Open) -> None:
@@ -307,15 +307,15 @@ def test_both_versions_stand_side_by_side(opened: Open) -> None:
 
 BAD_TABLES = (
     ("near\n", "the table has no rows"),
-    ("near,x\n1,1\n", "`x` is not a variable of this page; the variables are near, stopped"),
-    ("near,near\n1,1\n", "`near` appears twice in the header"),
+    ("near,x\n1,1\n", "x is not a variable of this page; the variables are near, stopped"),
+    ("near,near\n1,1\n", "near appears twice in the header"),
     ("near,stopped\n1,0\n1\n", "row 2 has 1 cells for 2 names"),
-    ("near\n1\n2\n", "row 2: `near` cannot be `2`"),
+    ("near\n1\n2\n", "row 2: near cannot be 2"),
     ('near,stopped\n0,1\n"0"1,0\n', "row 2: a quotation mark is not closed, or is inside a cell"),
     ('near,stopped\n0"1,0\n', "row 1: a quotation mark is not closed, or is inside a cell"),
     ('near,stopped\n"0,1\n' + '"1,0\n' * 100_000, "row 1: a quotation mark is not closed"),
-    ("near,stopped\n=1+0,0\n", "row 1: `near` cannot be `=1+0`"),
-    ("tick,near\n3,1\n5,1\n", "row 2: `5` is not the next `tick`"),
+    ("near,stopped\n=1+0,0\n", "row 1: near cannot be =1+0"),
+    ("tick,near\n3,1\n5,1\n", "row 2: 5 is not the next tick"),
     (
         "near\n" + "1\n" * 2001,
         "the table has 2001 rows, and the page shows at most 2000: load a shorter",
@@ -374,7 +374,11 @@ def test_a_start_gets_numbers_that_make_its_comparisons_true(opened: Open) -> No
     assert told(page, "battery < 20") == [str(row["(battery < 20)"]).lower() for row in given]
     assert told(page, "speed <= 0.5") == [str(row["(speed <= 0.5)"]).lower() for row in given]
     assert page.locator("#status").inner_text() == "what it shows"
-    assert page.locator("#hidden").inner_text().startswith("Not shown: 1 unknown")
+    assert (
+        page.locator("#hidden")
+        .inner_text()
+        .startswith("Other requirements at the last tick: 1 unknown")
+    )
 
 
 def test_a_start_begins_where_its_requirement_is_violated(opened: Open) -> None:
@@ -391,7 +395,9 @@ def test_what_is_not_shown_is_counted(opened: Open) -> None:
     page = opened(WITHIN, "the robot shall always satisfy q", address=address(rows))
     assert page.locator("#hidden").inner_text() == ""
     page.locator("#which").select_option("R2")
-    assert page.locator("#hidden").inner_text() == "Not shown: 1 violated at the last tick."
+    assert (
+        page.locator("#hidden").inner_text() == "Other requirements at the last tick: 1 violated."
+    )
     assert [*everything(page)][:2] == ["q", "R2 at this tick"]
 
 
@@ -399,7 +405,9 @@ def test_more_cells_than_a_browser_shows_are_counted(opened: Open) -> None:
     sentences = ["the robot shall always satisfy q"] * 40
     page = opened(*sentences, address="#ticks=2000&v.q=0_1*1999")
     assert page.locator("#which").input_value() == "0"
-    assert page.locator("#hidden").inner_text() == "Not shown: 39 violated at the last tick."
+    assert (
+        page.locator("#hidden").inner_text() == "Other requirements at the last tick: 39 violated."
+    )
     page.locator("#which").select_option("")
     assert page.locator("#which").input_value() == "0"
     assert "too many to show at once" in page.locator("#status").inner_text()

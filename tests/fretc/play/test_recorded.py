@@ -11,7 +11,7 @@ import pytest
 from compiler.targets.python import monitor as emitted
 from fretc.logs.signals.traces import WholeTicks
 from fretc.play.recorded import SHOWN, RecordedRun
-from fretc.play.starts import MOST, Start
+from fretc.play.starts import MOST, RecordedPlace, Start
 from monitors.kernel import Column, Monitor
 from monitors.loading import load
 from tests.effort import FULL
@@ -114,3 +114,19 @@ def test_what_is_not_on_the_page_is_counted() -> None:
     often = run_of("the robot shall always satisfy q", {"q": [True, False] * 30})
     assert len([*often.starts()]) == SHOWN
     assert [*often.notes()] == ["R1: 10 more violations of run.mcap are left out"]
+
+
+def test_a_window_has_all_signals_and_its_time_in_the_run() -> None:
+    columns = {"p": [t == 50 for t in range(100)], "q": [False] * 100}
+    times = WholeTicks(np.arange(100) * 100_000_000 + 5, 100_000_000)
+    made = {
+        name: Column(sum(1 << t for t, v in enumerate(c) if v), 0) for name, c in columns.items()
+    }
+    subject = requirement("whenever p the sw shall immediately satisfy q")
+    others = {"speedy": Column(1 << 50, 0)}
+    (start,) = RecordedRun(subject, made, times, "run.mcap", others).starts()
+    rows = rows_of(start)
+    first = place(start)
+    assert [t + first for t, row in enumerate(rows) if row["speedy"]] == [50]
+    assert start.place == RecordedPlace("run.mcap", 1, first / 10)
+    assert start.about.endswith("; other requirements are judged as if the run began here")

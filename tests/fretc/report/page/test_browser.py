@@ -115,7 +115,7 @@ def test_a_table_is_filtered_by_verdict(opened: Open) -> None:
 
 def test_a_filter_by_verdict_hides_no_suspect_one(opened: Open) -> None:
     runs = unfolded(opened(), "#req-R2")
-    for verdict, logs in (("violated", ["2.mcap", "5.mcap"]), ("suspect", ["5.mcap"])):
+    for verdict, logs in (("violated", ["2", "5"]), ("suspect", ["5"])):
         runs.get_by_label("Verdict", exact=True).select_option(verdict)
         heads = runs.locator("table.sortable tbody tr:visible > th").all_inner_texts()
         assert [text.split()[-1] for text in heads] == logs
@@ -134,7 +134,7 @@ def test_a_table_is_sorted_by_keyboard_and_says_so(opened: Open) -> None:
     assert runs.locator("tbody tr td:nth-child(3)").first.inner_text() == "10"
     page.keyboard.press("Enter")
     assert head.get_attribute("aria-sort") is None
-    assert runs.locator("tbody tr th").first.inner_text().startswith("0\n")
+    assert runs.locator("tbody tr th").first.inner_text() == "0"
 
 
 def test_a_link_to_a_filtered_row_shows_it_again(opened: Open) -> None:

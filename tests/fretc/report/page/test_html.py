@@ -96,12 +96,13 @@ def test_the_page_needs_nothing_but_itself(html: str) -> None:
 
 def test_only_the_script_and_the_style_of_the_page_may_run(html: str) -> None:
     (policy,) = re.findall(r'Content-Security-Policy" content="(.*?)"', html)
-    allowed = dict(re.findall(r"(\w+)-src &#39;(\S+?)&#39;|$^", policy.replace("'", "&#39;")))
-    for kind, tag in (("script", "script"), ("style", "style")):
-        (text,) = re.findall(f"<{tag}>(.*?)</{tag}>", html, re.DOTALL)
-        digest = base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
-        assert allowed[kind] == f"sha256-{digest}"
-    assert allowed["default"] == "none"
+    allowed = dict(part.split("-src ") for part in policy.split("; ") if "-src " in part)
+    for tag, count in (("script", 1), ("style", 2)):  # the second style is that of the sheets
+        texts = re.findall(f"<{tag}>(.*?)</{tag}>", html, re.DOTALL)
+        digests = [base64.b64encode(hashlib.sha256(text.encode()).digest()) for text in texts]
+        assert allowed[tag] == " ".join(f"'sha256-{digest.decode()}'" for digest in digests)
+        assert len(texts) == count
+    assert allowed["default"] == "'none'"
     assert not re.search(r"<[^>]* (style|on\w+)=", html)
 
 
@@ -113,7 +114,8 @@ def test_the_page_is_well_formed_and_its_links_lead_somewhere(html: str) -> None
     assert "#req-R2" in targets
     assert "#result-R2.2" in targets
     assert {target.removeprefix("#") for target in targets} <= set(ids)
-    labels = [str(a["aria-labelledby"]).split() for a in drawings(parsed)]
+    names = ("aria-labelledby", "aria-describedby")
+    labels = [str(a[name]).split() for a in drawings(parsed) for name in names if name in a]
     assert labels
     assert {id for pair in labels for id in pair} <= set(ids)
 
@@ -128,7 +130,7 @@ def test_the_page_can_be_read_by_machine_and_ear(html: str) -> None:
     assert len(parsed.of("caption")) == len(parsed.of("table"))
     assert {a.get("scope") for a in parsed.of("th")} == {"row", "col", "rowgroup", "colgroup"}
     assert {a.get("role") for a in drawings(parsed)} == {"img", "group"}  # of links
-    assert len(parsed.of("desc")) == len(drawings(parsed))
+    assert all("aria-describedby" in a or "aria-labelledby" in a for a in drawings(parsed))
 
 
 def test_a_verdict_is_a_word_and_a_sign_not_only_a_colour(html: str) -> None:
@@ -180,7 +182,7 @@ def test_a_violation_has_its_picture_and_its_values(html: str) -> None:
     cause = f"{late}; at 1.4 s clearance was unknown"
     old = "0.0318 m is 400 ms old, and valid for 300 ms"
     assert f"Violation 1. {cause}: {old} and vx was unknown." in text
-    assert "From 0.1 s to 2 s: 2 ticks with a trigger (1 s to 1.2 s)" in text
+    assert "From 0 s to 2 s: 2 ticks with a trigger (1 s to 1.2 s)" in text
     assert (
         "clearance is 0.0318 m, threshold < 0.05 m, unknown for 1.4 s, infinite for 300 ms." in text
     )
@@ -236,9 +238,12 @@ def test_no_text_leaves_its_place(tmp_path: Path) -> None:
 
 
 def shape(html: str) -> list[tuple[str, list[str]]]:
-    """All elements in their order; a long text of a drawing may have more lines."""
+    """All elements in their order; a long text of a drawing may have more lines.
+
+    Text with other letters than ASCII is isolated, by an element of its own.
+    """
     elements = [(tag, sorted(a)) for tag, a in Page(html).elements]
-    return [each for each in elements if each != ("text", ["x", "y"])]
+    return [each for each in elements if each not in (("text", ["x", "y"]), ("bdi", []))]
 
 
 def _everywhere(folder: Path, text: str) -> str:
@@ -293,7 +298,9 @@ def test_right_to_left_text_is_isolated(tmp_path: Path) -> None:
 
 
 def test_direction_marks_are_shown_as_escapes(tmp_path: Path) -> None:
-    assert "<bdi>a\\u202eb</bdi>" in _everywhere(tmp_path, "a\u202eb")
+    page = _everywhere(tmp_path, "a\u202eb")
+    assert "a\\u202eb" in page
+    assert "a\u202eb" not in page
 
 
 @pytest.mark.slow
@@ -305,4 +312,4 @@ def test_a_hundred_thousand_triggers_fit_into_a_small_page(tmp_path: Path) -> No
     report = report_of(
         known, tmp_path, result(known, "satisfied", ticks=ticks, triggers=triggers, latencies_s=[])
     )
-    assert len(as_html(report)) < 70_000
+    assert len(as_html(report)) < 85_000

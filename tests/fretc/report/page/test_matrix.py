@@ -173,7 +173,7 @@ def test_the_page_and_its_json_say_the_same_of_each_run(tmp_path: Path) -> None:
     text = build.html or ""
     row = text[text.index('<tr id="row-R1"') :]
     cells = _CELL.findall(row[: row.index("</tr>")])
-    assert [word for _, word, _ in cells] == [
+    assert [label.split(": ")[0] for _, label, _ in cells] == [
         f"{each['mark']['word']}{', suspect' if each['mark']['suspect'] else ''}"
         for each in view["results"]
     ]

@@ -139,3 +139,24 @@ def test_the_cause_says_what_did_not_come_and_what_the_signals_were() -> None:
     assert cause(endless, RESULT, {}) == "`stopped` was false from 12.3 s to 12.6 s (300 ms)."
     far = replace(broken(clearance=SignalSamples((9.0,), (inf,))), values={"clearance": None})
     assert cause(far, RESULT, {}).endswith("at 12.3 s clearance was +inf.")
+
+
+def test_a_crossing_too_small_to_see_has_an_enlarged_panel() -> None:
+    samples = SignalSamples((10.0, 12.3), (2.0, 0.049))
+    whole, part = panels(broken(clearance=samples), RESULT, {}, 10.0, 13.0)
+    assert (whole.is_enlarged, part.is_enlarged) == (False, True)
+    assert (round(part.low, 6), round(part.high, 6)) == (0.046, 0.054)
+    assert part.levels == (ThresholdLine(0.05, "< 0.05 m"),)
+    assert part.pieces == whole.pieces
+
+
+def test_a_crossing_that_can_be_seen_has_one_panel() -> None:
+    samples = SignalSamples((10.0, 12.3), (0.3, 0.01))
+    assert len(panels(broken(clearance=samples), RESULT, {}, 10.0, 13.0)) == 1
+
+
+def test_a_bound_that_must_hold_for_some_time_says_for_how_long() -> None:
+    samples = SignalSamples((10.0, 12.3), (0.3, 0.01))
+    held = {("near", "clearance"): " for 500 ms"}
+    (panel,) = panels(broken(clearance=samples), RESULT, {}, 10.0, 13.0, held)
+    assert panel.levels == (ThresholdLine(0.05, "< 0.05 m for 500 ms"),)

@@ -61,11 +61,27 @@ def test_a_violation_is_shown_with_its_trigger_and_some_ticks_around() -> None:
     broken = violation(moment(50, 5.0), moment(59, 5.9), moment(40, 4.0))
     result = replace(EMPTY, verdict="violated", triggers=at(5, 40), violations=(broken,))
     (picture,) = timelines(result, 0.1)
-    assert (picture.title, picture.start, picture.end) == ("Violation 1", 3.0, 7.0)
+    assert (picture.title, picture.start, picture.end) == ("Violation 1", 2.0, 8.0)
     assert {lane.name: lane.marks for lane in picture.lanes} == {
         "triggered": (SpanMark(4.0, 4.1, 1),),
         "violated": (SpanMark(5.0, 6.0, 1),),
     }
+
+
+def test_a_violation_of_always_is_shown_around_itself_and_goes_on_at_a_torn_edge() -> None:
+    broken = violation(moment(500, 50.0), moment(990, 99.0), moment(0, 0.0))
+    result = replace(EMPTY, ticks=1000, verdict="violated", violations=(broken,))
+    (picture,) = timelines(result, 0.1)
+    assert (picture.start, picture.end, picture.continues) == (48.0, 72.0, 99.1)
+    assert picture.flags == ()  # the trigger is before the picture
+    assert "The violation goes on to 99.1 s." in picture.text
+
+
+def test_a_deadline_keeps_its_trigger_in_the_picture() -> None:
+    at_end = violation(moment(150, 15.0), moment(150, 15.0), moment(50, 5.0), moment(149, 14.9))
+    (picture,) = timelines(replace(EMPTY, ticks=200, violations=(at_end,)), 0.1)
+    assert (picture.start, picture.end, picture.continues) == (3.0, 17.1, None)
+    assert [flag.kind for flag in picture.flags] == ["trigger", "deadline"]
 
 
 def test_an_open_demand_reaches_to_the_end() -> None:
