@@ -105,7 +105,7 @@ def violations(
         begin, broken = None if trigger is None else at(trigger), at(first)
         window = (
             _window(
-                begin if begin and horizon is not None else broken,
+                begin if begin and deadline_ticks is not None else broken,
                 due or broken,
                 broken,
                 recording,

@@ -81,7 +81,8 @@ def _results(
         if mark is not None:
             results.append(
                 replace(
-                    like, requirement=f"req-R{number}", number=column + 1,
+                    like, requirement=f"R{number}", section=f"req-R{number}", number=column + 1,
+                    anchor=f"result-R{number}.{column + 1}",
                     run=run.anchor, run_file=run.name, mark=mark,
                 )
             )  # fmt: skip

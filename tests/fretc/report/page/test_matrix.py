@@ -117,7 +117,7 @@ def test_a_cell_costs_about_sixty_bytes_and_the_page_one_and_a_half_megabytes(
 ) -> None:
     groups = [(f"scenario-{n}", 10) for n in range(10)]
     text = page(build, 50, groups, mostly_satisfied(1, 0.05))
-    cells = [match[0] for match in _CELL.finditer(text)]
+    cells = [match[0] for match in _CELL.finditer(text, text.index('<table class="matrix'))]
     assert len(cells) == 5_000
     assert sum(map(len, cells)) / len(cells) <= 62
     assert len(text.encode()) <= 1_500_000
