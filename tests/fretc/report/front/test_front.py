@@ -1,5 +1,6 @@
 """The front page: each requirement is counted once, and each sentence follows from the runs."""
 
+import re
 from collections.abc import Mapping
 from datetime import date
 from pathlib import Path
@@ -168,7 +169,20 @@ def test_the_decisive_sentence_says_where_each_violation_is_and_where_only(
         for run, letter in zip(RUNS, letters, strict=True)
     ]
     page = front(known, folder, *results)
-    assert (page["headline"], page["sentences"]) == (headline, sentences)
+    without_interval = [re.sub(_INTERVAL, "", text) for text in page["sentences"]]
+    assert (page["headline"], without_interval) == (headline, sentences)
+
+
+_INTERVAL = r"; 95 % interval of the share of failing runs: \S+ % to \S+ %"
+
+
+def test_the_interval_of_failing_runs_is_that_of_clopper_and_pearson(
+    known: Project, folder: Path
+) -> None:
+    """One of two: 1 - 0.975 ** 0.5 is 0.0126, and 0.975 ** 0.5 is 0.9874."""
+    results = [result(known, word, "R1", f"{word}.mcap") for word in ("violated", "satisfied")]
+    (sentence,) = front(known, folder, *results)["sentences"]
+    assert sentence.endswith("; 95 % interval of the share of failing runs: 1.3 % to 99 %.")
 
 
 def test_a_violation_of_before_a_change_is_never_said_to_be_one_of_now(
