@@ -16,7 +16,7 @@ from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from tempfile import mkdtemp
-from typing import Any
+from typing import Any, NoReturn
 
 import pytest
 
@@ -123,6 +123,19 @@ def path(name: str) -> str | None:
 def installed(name: str) -> str:
     """Where it is; the test is skipped where it is not installed."""
     return path(name) or pytest.skip(f"needs {name}: {PROGRAMS[name]}")
+
+
+def leave_out(need: str) -> NoReturn:
+    """Skip the running test, which needs something that is not here."""
+    pytest.skip(need)
+
+
+def python(version: str) -> str:
+    """The interpreter of such a version; the test is skipped where it is not installed."""
+    root = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv"))
+    kept = sorted(root.glob(f"versions/{version}.*/bin/python"))
+    found = str(kept[-1]) if kept else shutil.which(f"python{version}")  # On PATH may be a shim.
+    return found or leave_out(f"needs python{version}: pyenv install {version}")
 
 
 def needs(*names: str) -> pytest.MarkDecorator:

@@ -1,8 +1,6 @@
 """What is emitted for robots runs on Python 3.8 and 3.9, and gives the same results there."""
 
-import os
 import random
-import shutil
 import subprocess
 import sys
 from collections.abc import Sequence
@@ -26,6 +24,7 @@ from monitors.interceptor import (
 from tests.compiler.targets.ros.test_package import described, written
 from tests.effort import some
 from tests.monitoring import requirement
+from tests.programs import python
 from tests.strategies import few_templates
 
 VERSIONS = ("3.8", "3.9")
@@ -45,14 +44,6 @@ for hold, latching, stop, held, age in EVERY:
         print(step(state, event, options))
 """
 STATES = [*product((0, 2), (False, True), (False, True), (0, 1), (0, 2))]
-
-
-def python(version: str) -> str:
-    """The interpreter; the test is skipped where it is not installed."""
-    root = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv"))
-    kept = sorted(root.glob(f"versions/{version}.*/bin/python"))
-    found = str(kept[-1]) if kept else shutil.which(f"python{version}")  # On PATH may be a shim.
-    return found or pytest.skip(f"needs python{version}: pyenv install {version}")
 
 
 def run(*command: str, folder: Path) -> str:
