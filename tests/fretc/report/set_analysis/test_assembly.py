@@ -47,7 +47,8 @@ def test_a_conflict_is_in_every_headline(fretc: Fretc) -> None:
     write(FIGHT)
     assert fretc("analyze").status == 1
     content = report(fretc)
-    told = "R1 and R2 cannot be satisfied together. This follows from the sentences, not from the runs."
+    conflict = "R1 and R2 cannot be satisfied together."
+    told = f"{conflict} This follows from the sentences, not from the runs."
     assert content["front"]["headline"].endswith(told)
     assert content["overall"]["headline"].endswith(told)
     assert content["overall"]["mark"]["word"] == "cannot be satisfied together"
