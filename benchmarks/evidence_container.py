@@ -154,8 +154,8 @@ def store(path: Path) -> Store:
     return found
 
 
-def briefs(path: Path) -> None:
-    deque(store(path).briefs(), maxlen=0)
+def summaries(path: Path) -> None:
+    deque(store(path).summaries(), maxlen=0)
 
 
 def facts(path: Path) -> None:
@@ -193,7 +193,7 @@ def summary(path: Path) -> None:
 Step = Callable[..., object]
 STEPS: dict[str, Step] = {
     "open": store,
-    "briefs": briefs,
+    "summaries": summaries,
     "facts of runs": facts,
     f"{SHOWN} results in full": details,
     "latencies of R1": latencies,

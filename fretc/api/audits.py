@@ -76,7 +76,7 @@ def audit_logs(
 
 
 def _audit(plan: Plan, run: Run) -> Audit:
-    marks = VerdictWords.of((each for _, each in run.source.briefs()), run.estimates)
+    marks = VerdictWords.of((each for _, each in run.source.summaries()), run.estimates)
     return Audit(
         run.results,
         run.estimates,

@@ -138,8 +138,10 @@ def _subject(at: JsonValue, about: str) -> SignedItem:
 
 def evidence(file: EvidenceSource, proofs: Proofs | None) -> Statement:
     """The statement about evidence and proofs."""
-    briefs = [brief for _, brief in file.briefs()]
-    logs = dict.fromkeys(SignedItem(LOG, result.run, result.log) for result in briefs if result.log)
+    summaries = [summary for _, summary in file.summaries()]
+    logs = dict.fromkeys(
+        SignedItem(LOG, result.run, result.log) for result in summaries if result.log
+    )
     return Statement(
         EVIDENCE,
         (
@@ -149,7 +151,7 @@ def evidence(file: EvidenceSource, proofs: Proofs | None) -> Statement:
         ),
         {
             "fretc": file.fretc,
-            "requirements": _requirements(briefs),
+            "requirements": _requirements(summaries),
             "probabilities": [
                 [probability.requirement, probability.answer] for probability in file.probabilities
             ],

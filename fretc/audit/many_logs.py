@@ -18,7 +18,7 @@ from fretc.audit.evidence.claim import AuditedRequirement
 from fretc.audit.evidence.estimates import estimates, warnings
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.reader import EvidenceFile
-from fretc.audit.evidence.result_summaries import EvidenceSource, ResultSummary, brief
+from fretc.audit.evidence.result_summaries import EvidenceSource, ResultSummary, summary_of
 from fretc.audit.evidence.run_plot_data import map_diagnostics, plot_data
 from fretc.audit.evidence.schema import (
     SCHEMA,
@@ -192,7 +192,7 @@ def audit_logs(
 def combined_audit(plan: Plan, audits: Sequence[LogResult]) -> AuditOutcome:
     """One audit from the results of single logs, in their order."""
     results = [result for audit in audits for result in audit.results]
-    of_all_runs = estimates_of(plan, map(brief, results))
+    of_all_runs = estimates_of(plan, map(summary_of, results))
     tallies = (tallies_of(audit.results) for audit in audits)
     of_logs = [(audit.results[0].run, audit.diagnostics) for audit in audits]
     return AuditOutcome(

@@ -133,7 +133,7 @@ def _is_evidence(path: Path) -> bool:
 
 def results(source: EvidenceSource) -> Iterator[Result]:
     """All results; those of a store are read in batches."""
-    places = [place for place, _ in source.briefs()]
+    places = [place for place, _ in source.summaries()]
     for start in range(0, len(places), _BATCH):
         yield from (result for _, result in source.details(places[start : start + _BATCH]))
 

@@ -358,10 +358,10 @@ def _subject(
 ) -> AuditText:
     """The audit as its text shows it."""
     not_judged = {refusal.id for refusal in job.plan.refused}
-    briefs = (each for _, each in result.source.briefs())
+    summaries = (each for _, each in result.source.summaries())
     return AuditText(
         result.source,
-        VerdictWords.of(briefs, result.estimates, not_judged),
+        VerdictWords.of(summaries, result.estimates, not_judged),
         result.estimates,
         job.project,
         not_judged,

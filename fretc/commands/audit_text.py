@@ -124,7 +124,7 @@ def _listed(subject: AuditText, titles: Mapping[str, str], screen: Screen) -> It
         for id in subject.marks.ids
     }
     room = max(map(width, names.values()), default=0)
-    for run in runs(brief for _, brief in subject.source.briefs()):
+    for run in runs(summary for _, summary in subject.source.summaries()):
         yield ((visible(run[0].run), None),)
         for result in run:
             verdict = VERDICTS[result.verdict]

@@ -130,7 +130,7 @@ def _found(project: Project, files: _Files, *, analyze: bool) -> list[Diagnostic
         found.append(audited)
     proofs = _value(proven(files.verification), found) or ()
     analyzed = _value(known_analysis(files.analysis), found)
-    briefs = ResultSummaries.of(results) if results else None
+    summaries = ResultSummaries.of(results) if results else None
     path = sibling_path(files.requirements, "fretc.lock")
     lock = _value(read_lock(path), found) if path is not None else None
     waivers, waived = {}, sibling_path(files.requirements, "waivers.toml")
@@ -138,13 +138,13 @@ def _found(project: Project, files: _Files, *, analyze: bool) -> list[Diagnostic
         known, wrong = read_waivers(waived, [r.id for r in project.requirements], today())
         waivers = {id: waiver for id, waiver in known.items() if waiver.covers(today())}
         found.extend(wrong)
-    assessed = assessments(project, briefs, lock, waivers, proofs, analyzed)
+    assessed = assessments(project, summaries, lock, waivers, proofs, analyzed)
     standings = [assessment.standing for assessment in assessed]
     if path is not None:
         chains = [standing.chain for standing in standings]
         withdrawn = withdrawn_requirements(project.requirements, chains, lock)
         found.extend(withdrawal_warnings(withdrawn, path))
-    found.extend(stale_evidence(assessed, briefs, files.evidence))
+    found.extend(stale_evidence(assessed, summaries, files.evidence))
     found.extend(idle_waivers(assessed))
     found.extend(reason for _, why in refusals(project) for reason in why)
     if analyze:

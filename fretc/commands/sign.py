@@ -231,7 +231,7 @@ def _evidence(audited: EvidenceSource, proofs: Proofs | None) -> Signable:
 
     if not os.path.isdir(audited.file):
         _same_bytes(audited.file, audited.sha256)
-    if next(audited.briefs(), None) is None:
+    if next(audited.summaries(), None) is None:
         fail(_usage(f"`{audited.file}` contains no run", "audit a log: `fretc audit LOG...`"))
     statement = attestation.evidence(audited, proofs)
     lines = (*_summary_of_evidence(audited), *(_summary_of_proofs(proofs) if proofs else ()))
@@ -243,7 +243,7 @@ def _summary_of_evidence(audited: EvidenceSource) -> Iterator[str]:
     from fretc.report.model.assessments import SingleAudit
     from monitors import kernel
 
-    audits = [SingleAudit(brief, ()) for _, brief in audited.briefs()]
+    audits = [SingleAudit(summary, ()) for _, summary in audited.summaries()]
     counts = Counter(audit.verdict for audit in audits)
     totals = ", ".join(f"{count} {verdict}" for verdict, count in sorted(counts.items()))
     yield f"evidence {audited.file}: {totals}"

@@ -95,12 +95,12 @@ def of_all_runs(
     names: list[str] = []
     known: dict[tuple[str, str], int] = {}
     places: dict[str, dict[int, int]] = {}
-    for place, brief in source.briefs():
-        key = brief.run, brief.content
+    for place, summary in source.summaries():
+        key = summary.run, summary.content
         if key not in known:
             known[key] = len(names)
-            names.append(brief.run)
-        places.setdefault(brief.requirement, {})[place] = known[key]
+            names.append(summary.run)
+        places.setdefault(summary.requirement, {})[place] = known[key]
     return tuple(names), of_requirements(source, places)
 
 

@@ -101,7 +101,7 @@ def of_evidence(
     ids = {requirement.id for requirement in requirements}
     violated = dict.fromkeys(
         (each.run, each.log)
-        for _, each in evidence.briefs()
+        for _, each in evidence.summaries()
         if each.violations and each.requirement in ids
     )
     starts: list[Start] = []

@@ -56,10 +56,10 @@ def report(inputs: Inputs) -> tuple[ReportView, Details, tuple[Diagnostic, ...]]
     """The report, the evidence behind its rows, and diagnostics about its files."""
     project, evidence = inputs.project, inputs.evidence
     lock, together = inputs.lock, inputs.together
-    briefs = ResultSummaries.of(evidence) if evidence else None
-    runs_by_key = runs(briefs)
+    summaries = ResultSummaries.of(evidence) if evidence else None
+    runs_by_key = runs(summaries)
     all_runs = tuple(runs_by_key.values())
-    assessed = assessments(project, briefs, lock, inputs.waivers, inputs.proofs, together)
+    assessed = assessments(project, summaries, lock, inputs.waivers, inputs.proofs, together)
     chains = [assessment.standing.chain for assessment in assessed]
     withdrawn = withdrawn_requirements(project.requirements, chains, lock)
     anchors = {assessment.id: assessment.anchor for assessment in reversed(assessed)}
@@ -140,7 +140,7 @@ def report(inputs: Inputs) -> tuple[ReportView, Details, tuple[Diagnostic, ...]]
         remarks=tuple(remark(diagnostic) for diagnostic in (*project.diagnostics, *checked)),
         hazards=hazards,
         matrix=rows,
-        orphans=orphans(project, assessed, briefs),
+        orphans=orphans(project, assessed, summaries),
         reviewed=reviews.summary(assessed, inputs.book),
         changes=all_changes,
         withdrawn=tuple(
@@ -158,7 +158,7 @@ def report(inputs: Inputs) -> tuple[ReportView, Details, tuple[Diagnostic, ...]]
     )
     diagnostics = (
         *(diagnostic for diagnostic in checked if diagnostic.accepted),
-        *stale_evidence(assessed, briefs, inputs.path),
+        *stale_evidence(assessed, summaries, inputs.path),
         *idle_waivers(assessed),
         *inputs.book.diagnostics(),
         *idle_signatures(inputs.book, assessed),

@@ -15,7 +15,7 @@ from fretish.diagnostics.source import Source
 
 
 def stale_evidence(
-    assessments: Sequence[Assessment], briefs: ResultSummaries | None, path: str
+    assessments: Sequence[Assessment], summaries: ResultSummaries | None, path: str
 ) -> tuple[Diagnostic, ...]:
     """F504 for requirements with outdated evidence, and for unknown ids in the evidence.
 
@@ -40,7 +40,7 @@ def stale_evidence(
     ]
     strange = [
         diagnostic("evidence_of_unknown_requirement", Source(path, "").span(), id=id, help=again)
-        for id in unknown_ids(assessments, briefs)
+        for id in unknown_ids(assessments, summaries)
     ]
     return (*suspect, *strange)
 

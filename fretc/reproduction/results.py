@@ -22,7 +22,7 @@ from fretc.audit.evidence.basis import BINDINGS, KINDS, SENTENCE, of_all, outdat
 from fretc.audit.evidence.claim import AuditedRequirement
 from fretc.audit.evidence.estimates import estimates
 from fretc.audit.evidence.probabilities import Estimated
-from fretc.audit.evidence.result_summaries import brief
+from fretc.audit.evidence.result_summaries import summary_of
 from fretc.audit.evidence.schema import EvidenceDocument, RequirementRecord, Result
 from fretc.audit.evidence.schema import LogFinding as OfLog
 from fretc.audit.many_logs import Engine, audit_logs, named_situations
@@ -246,7 +246,7 @@ def _estimate_difference(
     least, most = _DOUBT
     if not least < before.confidence <= most:
         return f"its confidence is not above {least} and at most {most}"
-    (now,) = estimates([claim], [*map(brief, results)], before.confidence)
+    (now,) = estimates([claim], [*map(summary_of, results)], before.confidence)
     if before.answer != now.answer:
         return f"the answer is {now.answer} now, and was {before.answer}"
     others = _different_keys(plain(before), plain(now))

@@ -138,7 +138,7 @@ def _verdict(result: ResultSummary) -> ChainItem:
 
 def chains(
     project: Project,
-    briefs: ResultSummaries | None,
+    summaries: ResultSummaries | None,
     artefacts: Mapping[RequirementEntry, Sequence[Product]] | None = None,
     proofs: Sequence[Proof] = (),
     known: Mapping[RequirementEntry, Basis] | None = None,
@@ -148,17 +148,17 @@ def chains(
 
     Args:
         project: with or without errors; the chain of an unformalized requirement ends early.
-        briefs: results of the evidence; None if no run was audited.
+        summaries: results of the evidence; None if no run was audited.
         artefacts: requirement → its products; None: computed by `products`.
         proofs: the results of verification.
         known: the present inputs of a verdict on each requirement; None: computed by `bases`.
         analyzed: the file of `fretc analyze`; None if there is none.
     """
     requirements = {requirement.entry: requirement for requirement in project.formalized}
-    results = briefs.by_requirement if briefs else {}
+    results = summaries.by_requirement if summaries else {}
     if artefacts is None:
         artefacts = {entry: products_of(requirement) for entry, requirement in requirements.items()}
-    common = _common(project, briefs, artefacts, proofs, known, analyzed)
+    common = _common(project, summaries, artefacts, proofs, known, analyzed)
     return tuple(
         _ChainBuilder(common, entry).build(
             entry,
@@ -194,7 +194,7 @@ class _Common:
 
 def _common(
     project: Project,
-    briefs: ResultSummaries | None,
+    summaries: ResultSummaries | None,
     artefacts: Mapping[RequirementEntry, Sequence[Product]],
     proofs: Sequence[Proof],
     known: Mapping[RequirementEntry, Basis] | None,
@@ -206,7 +206,7 @@ def _common(
         project,
         {requirement.id: requirement for requirement in project.requirements},
         bases(project, topics, monitors(artefacts)) if known is None else known,
-        briefs.source.fretc if briefs else "",
+        summaries.source.fretc if summaries else "",
         _by_requirement(project.acceptances),
         {product.file: product.sha256 for product in shared},
         topics,

@@ -296,12 +296,12 @@ class _HistoryReader:
         }
         together = {probability.requirement for probability in source.probabilities}
         places, bases = array("q"), array("q")
-        for _, brief in source.briefs():
-            run, basis = run_of[brief.run], self._basis(brief)
+        for _, summary in source.summaries():
+            run, basis = run_of[summary.run], self._basis(summary)
             places.append(run)
             bases.append(basis)
-            if brief.requirement not in together:
-                self._add(brief, run, basis)
+            if summary.requirement not in together:
+                self._add(summary, run, basis)
         self.places.append(places)
         self.bases.append(bases)
         self._add_estimates(source, number, [self.runs[i].round for i in run_of.values()])
@@ -318,16 +318,16 @@ class _HistoryReader:
             time_of(facts),
         )
 
-    def _add(self, brief: ResultSummary, run: int, basis: int) -> None:
+    def _add(self, summary: ResultSummary, run: int, basis: int) -> None:
         one = self.runs[run]
-        self.judged[brief.requirement, one.scenario].append(
+        self.judged[summary.requirement, one.scenario].append(
             RunOutcome(
                 run,
                 one.round,
-                brief.verdict,
+                summary.verdict,
                 basis,
-                brief.latency_max_s,
-                brief.latency_median_s,
+                summary.latency_max_s,
+                summary.latency_median_s,
             )
         )
 
@@ -339,8 +339,8 @@ class _HistoryReader:
                 RunOutcome(-1, own, probability.answer, 0)
             )
 
-    def _basis(self, brief: ResultSummary) -> int:
-        prints = brief.fingerprints
+    def _basis(self, summary: ResultSummary) -> int:
+        prints = summary.fingerprints
         parts = tuple(str(getattr(prints, name)) for name in _BASIS)
         return self._numbers.setdefault(parts, len(self._numbers))
 

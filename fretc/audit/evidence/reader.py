@@ -19,8 +19,8 @@ from fretc.audit.evidence.result_summaries import (
     HeadProperties,
     ResultSummary,
     RunFacts,
-    brief,
     run_facts,
+    summary_of,
 )
 from fretc.audit.evidence.schema import (
     EvidenceDocument,
@@ -51,11 +51,6 @@ class EvidenceFile(HeadProperties):
     document: EvidenceDocument
 
     @property
-    def content_sha256(self) -> str:
-        """SHA-256 of the file: nothing in it depends on when or where it was made."""
-        return self.sha256
-
-    @property
     def head(self) -> EvidenceDocument:
         """The facts of the audit as a whole."""
         return self.document
@@ -65,10 +60,10 @@ class EvidenceFile(HeadProperties):
         """One result for each run and requirement."""
         return self.document.results
 
-    def briefs(self) -> Iterator[tuple[int, ResultSummary]]:
+    def summaries(self) -> Iterator[tuple[int, ResultSummary]]:
         """The summary of each result with its index, in order."""
         for index, result in enumerate(self.results):
-            yield index, brief(result)
+            yield index, summary_of(result)
 
     def runs(self) -> Iterator[RunFacts]:
         """The facts of each run, in the order of their first results."""

@@ -1,7 +1,7 @@
 """Summaries of results without their events, and the interface of evidence that provides them.
 
 Ten thousand runs do not fit into memory with all their events. What counts results, marks them and
-sorts them reads briefs, and asks for the few results that it shows in full.
+sorts them reads summaries, and asks for the few results that it shows in full.
 """
 
 from __future__ import annotations
@@ -123,7 +123,7 @@ class RunFacts:
 
 
 class Head(Protocol):
-    """The facts of an audit as a whole, in a file or in the manifest of a store."""
+    """The facts of an audit as a whole, in a file or in a store."""
 
     @property
     def fretc(self) -> str:
@@ -189,11 +189,10 @@ class EvidenceSource(Protocol):
 
     @property
     def sha256(self) -> str:
-        """SHA-256 of the evidence file; of a store the SHA-256 of its manifest."""
+        """SHA-256 of the evidence file, or of the records of a store.
 
-    @property
-    def content_sha256(self) -> str:
-        """The same, without the register of a store: another audit of the same logs gives it."""
+        Another audit of the same logs gives the same.
+        """
 
     @property
     def fretc(self) -> str:
@@ -215,7 +214,7 @@ class EvidenceSource(Protocol):
     def selection(self) -> Selection | None:
         """The selection of the named logs that were audited; None: all."""
 
-    def briefs(self) -> Iterator[tuple[int, ResultSummary]]:
+    def summaries(self) -> Iterator[tuple[int, ResultSummary]]:
         """The summary of each result with its index, in order; the results of a run adjoin."""
 
     def runs(self) -> Iterator[RunFacts]:
@@ -257,7 +256,7 @@ class ResultSummaries:
         groups: dict[str, list[tuple[int, ResultSummary]]] = {}
         pools: _Pools = {str: {}, int: {}, float: {}}
         firsts: dict[tuple[str, str], int] = {}
-        for index, each in source.briefs():
+        for index, each in source.summaries():
             shared = _sharing(each, pools)
             groups.setdefault(each.requirement, []).append((index, shared))
             firsts.setdefault((shared.run, shared.log), index)
@@ -267,14 +266,14 @@ class ResultSummaries:
 _Pools = dict[type, dict[Any, Any]]
 
 
-def _sharing(brief: ResultSummary, pools: _Pools) -> ResultSummary:
+def _sharing(summary: ResultSummary, pools: _Pools) -> ResultSummary:
     """The summary with its values replaced by equal ones that are already in memory."""
-    values, share = [*_values(brief)], pools[str].setdefault
+    values, share = [*_values(summary)], pools[str].setdefault
     for at, kind in _COMMON:
         value = values[at]
         if value:  # 0.0 and -0.0 are equal, and are two
             values[at] = pools[kind].setdefault(value, value)
-    prints = [each and share(each, each) for each in _prints(brief.fingerprints)]
+    prints = [each and share(each, each) for each in _prints(summary.fingerprints)]
     values[_AT] = Hashes(**dict(zip(_PRINTS, prints, strict=True)))
     return ResultSummary(*values)
 
@@ -357,7 +356,7 @@ class CountedResult(PartialRecord, frozen=True, kw_only=True):
         return trials_of(self.outcomes)
 
 
-def brief(result: Result | CountedResult) -> ResultSummary:
+def summary_of(result: Result | CountedResult) -> ResultSummary:
     """The summary of a result."""
     violations, latencies = result.violations, result.latencies
     first = violations[0] if violations else None

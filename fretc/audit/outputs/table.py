@@ -16,7 +16,7 @@ from fretc.audit.evidence.result_summaries import (
     CountedResult,
     EvidenceSource,
     RunFacts,
-    brief,
+    summary_of,
 )
 from fretc.audit.evidence.schema import Health, Result, Violation
 from fretc.audit.store.anywhere import required_source
@@ -151,7 +151,7 @@ def rows(source: EvidenceSource) -> Iterator[tuple[Any, ...]]:
     if isinstance(source, Store):
         found = source.counted()
     else:
-        found = (result for _, result in source.details([n for n, _ in source.briefs()]))
+        found = (result for _, result in source.details([n for n, _ in source.summaries()]))
     return (row_of(result, source.fretc) for result in found)
 
 
@@ -162,7 +162,7 @@ def row_of(result: Result | CountedResult, fretc: str) -> tuple[Any, ...]:
         result: a record of evidence.
         fretc: the version of fretc that wrote the result.
     """
-    summary, health = brief(result), result.health
+    summary, health = summary_of(result), result.health
     prints = summary.fingerprints
     return (
         *_counted(summary),
@@ -184,7 +184,7 @@ def _violations(source: EvidenceSource) -> Iterator[tuple[Any, ...]]:
     if isinstance(source, Store):
         found = source.violations()
     else:
-        results = (result for _, result in source.details([n for n, _ in source.briefs()]))
+        results = (result for _, result in source.details([n for n, _ in source.summaries()]))
         found = ((each.run, each.requirement, each.violations) for each in results)
     for run, requirement, violations in found:
         for violation in violations:

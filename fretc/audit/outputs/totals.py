@@ -126,14 +126,14 @@ class VerdictWords:
 
     @staticmethod
     def of(
-        briefs: Iterable[ResultSummary],
+        summaries: Iterable[ResultSummary],
         estimates: Iterable[Estimated] = (),
         refused: Collection[str] = (),
     ) -> VerdictWords:
         """The words of all results of an audit.
 
         Args:
-            briefs: the summaries of all results, in their order.
+            summaries: the summaries of all results, in their order.
             estimates: the answers of all runs.
             refused: the ids of requirements that could not be compared with any run.
         """
@@ -145,7 +145,7 @@ class VerdictWords:
         index = 0
         verdicts: set[str] = set()
         alone: set[str] = set()
-        for run in runs(briefs):
+        for run in runs(summaries):
             names.append(run[0].run)
             words.append({each.requirement: word_of(each, refused) for each in run})
             ids |= dict.fromkeys(words[-1])

@@ -20,7 +20,7 @@ from compiler.files.text_files import open_regular, sha256
 from compiler.files.text_files import read as read_text
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.reader import EvidenceFile
-from fretc.audit.evidence.result_summaries import brief
+from fretc.audit.evidence.result_summaries import summary_of
 from fretc.audit.evidence.schema import SCHEMA as EVIDENCE
 from fretc.audit.evidence.schema import (
     BindingsRecord,
@@ -166,7 +166,7 @@ def _result(
         own = {"hashes": hashes, "violations": broken, "health": run, "labels": run["labels"]}
         record = {**row, **more, **own}
         result = decoded(_plain(types.type_info(Result), record), Result)
-    known = brief(result)
+    known = summary_of(result)
     if any(row[name] != getattr(known, name) for name in _COMPARED):
         raise SchemaError("the counts in `results` differ from the other tables")
     return result

@@ -35,8 +35,8 @@ from fretc.audit.evidence.result_summaries import (
     PartialRecord,
     ResultSummary,
     RunFacts,
-    brief,
     run_facts,
+    summary_of,
 )
 from fretc.audit.evidence.schema import (
     EvidenceDocument,
@@ -109,9 +109,9 @@ class Store(HeadProperties):
         """The facts of the audit as a whole."""
         return self.document
 
-    def briefs(self) -> Iterator[tuple[int, ResultSummary]]:
+    def summaries(self) -> Iterator[tuple[int, ResultSummary]]:
         """The summary of each result with its index, in order; the results of a run adjoin."""
-        return enumerate(map(brief, self.counted()))
+        return enumerate(map(summary_of, self.counted()))
 
     def runs(self) -> Iterator[RunFacts]:
         """The facts of each run, in the order of their first results."""
@@ -165,11 +165,6 @@ class Store(HeadProperties):
                 with self._valid():
                     found = strict(each.thresholds, list[ThresholdRecord])
                 yield index, found
-
-    @property
-    def content_sha256(self) -> str:
-        """The SHA-256 of the records, which do not depend on the register."""
-        return self.sha256
 
     def situations(
         self, requirements: Collection[str]

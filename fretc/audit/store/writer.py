@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
-from sqlite3 import Error as SqliteError
 
-from compiler.files.records import UNSET, replace
-from compiler.files.text_files import destination
-from fretc.audit.evidence.schema import EvidenceDocument, Result
+from compiler.files.records import replace
+from fretc.audit.evidence.schema import EvidenceDocument
 from fretc.audit.evidence.writer import text
 from fretc.audit.store import earlier_store
 from fretc.audit.store.container import (
@@ -20,14 +18,13 @@ from fretc.audit.store.container import (
     closed,
     identity,
     is_container,
-    next_unfinished,
-    packed,
     remove_file,
     rows,
     unfinished,
     written,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.system.files import replace as rename
 
 
 class StoreFile:
@@ -105,7 +102,9 @@ def publish(path: Path) -> Path:
     """Give a complete file its name in one step; gives its new path."""
     with path.open("rb") as file:
         os.fsync(file.fileno())
-    return path.replace(path.with_name(FILE))
+    named = path.with_name(FILE)
+    rename(path, named)
+    return named
 
 
 def is_store(folder: Path) -> bool:
@@ -121,45 +120,6 @@ def remove(folder: Path) -> None:
     earlier_store.remove_tables(folder)
     with suppress(OSError):
         folder.rmdir()
-
-
-def runs_of(results: Iterable[Result]) -> list[list[Result]]:
-    """The results of each run: adjoining results that share the facts of a run.
-
-    A result with plot data is the first of its run.
-    """
-    runs: list[list[Result]] = []
-    ids: set[str] = set()
-    for result in results:
-        is_first = not runs or result.requirement in ids or result.course is not UNSET
-        if is_first or _shared(result) != _shared(runs[-1][0]):
-            runs.append([])
-            ids = set()
-        runs[-1].append(result)
-        ids.add(result.requirement)
-    return runs
-
-
-def _shared(result: Result) -> tuple[object, ...]:
-    return result.run, result.health, result.labels
-
-
-def write_document(folder: Path, document: EvidenceDocument) -> str | Diagnostic:
-    """Write evidence that is in memory as a store; gives the SHA-256 of the evidence."""
-    try:
-        destination(folder / FILE)
-        folder.mkdir(parents=True, exist_ok=True)
-        file = StoreFile(next_unfinished(folder))
-        file.connection.execute("BEGIN")
-        for place, run in enumerate(runs_of(document.results)):
-            file.put(*packed(place, run))
-        file.connection.execute("COMMIT")
-        sha256 = complete(file.path, document, file.close())
-        publish(file.path)
-    except (OSError, SqliteError) as error:
-        return not_written(folder, error)
-    earlier_store.remove_tables(folder)
-    return sha256
 
 
 def not_written(folder: Path, error: Exception) -> Diagnostic:

@@ -42,7 +42,7 @@ def identity(
     rows = [IdentityRow("Date", (_date(runs),))]
     rows += [IdentityRow(key, (text,)) for key, text in _labels(runs)]
     if evidence is not None:
-        rows.append(IdentityRow("Evidence", (f"SHA-256 {evidence.content_sha256}",)))
+        rows.append(IdentityRow("Evidence", (f"SHA-256 {evidence.sha256}",)))
         rows.append(IdentityRow("Audited by", (f"fretc {evidence.fretc}",)))
     if runs:
         rows.append(IdentityRow("Exposure", tuple(_exposure(runs, groups, evidence))))

@@ -258,7 +258,7 @@ class Assessment:
 
 def assessments(
     project: Project,
-    briefs: ResultSummaries | None,
+    summaries: ResultSummaries | None,
     lock: Lock | None = None,
     waivers: Mapping[str, Waiver] = MappingProxyType({}),
     proofs: Sequence[Proof] = (),
@@ -268,7 +268,7 @@ def assessments(
 
     Args:
         project: with or without errors.
-        briefs: results of the evidence; None if no run was audited.
+        summaries: results of the evidence; None if no run was audited.
         lock: None if no requirement is reviewed.
         waivers: requirement → waiver, for waivers that are valid today.
         proofs: the results of verification.
@@ -276,12 +276,12 @@ def assessments(
     """
     requirements = {requirement.entry: requirement for requirement in project.formalized}
     diagnostics = {failed.requirement: failed.diagnostic for failed in project.failed}
-    results = briefs.by_requirement if briefs else {}
+    results = summaries.by_requirement if summaries else {}
     products_of = {id: products(requirement) for id, requirement in requirements.items()}
     basis_of = bases(project, monitors=monitors(products_of))
-    all_chains = chains(project, briefs, products_of, proofs, basis_of, analyzed)
+    all_chains = chains(project, summaries, products_of, proofs, basis_of, analyzed)
     standing_of_each = standings(all_chains, lock)
-    audited_by = briefs.source.fretc if briefs else ""
+    audited_by = summaries.source.fretc if summaries else ""
     anchors: list[str] = []
     assessed: list[Assessment] = []
     for entry, standing in zip(project.requirements, standing_of_each, strict=True):
@@ -304,7 +304,7 @@ def assessments(
                 standing,
                 waivers.get(entry.id),
                 requirement is not None and _is_bound(requirement, project.declarations),
-                _probability(entry.id, requirement, briefs, audits),
+                _probability(entry.id, requirement, summaries, audits),
             )
         )
     return tuple(assessed)
@@ -313,10 +313,10 @@ def assessments(
 def _probability(
     id: str,
     requirement: FormalizedRequirement | None,
-    briefs: ResultSummaries | None,
+    summaries: ResultSummaries | None,
     audits: Sequence[SingleAudit],
 ) -> ProbabilityAudit | None:
-    estimations = briefs.source.probabilities if briefs is not None else ()
+    estimations = summaries.source.probabilities if summaries is not None else ()
     estimation = next((one for one in estimations if one.requirement == id), None)
     if estimation is None:
         return None

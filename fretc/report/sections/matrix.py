@@ -121,7 +121,7 @@ def _review(assessment: Assessment) -> Mark:
 
 
 def orphans(
-    project: Project, assessments: Sequence[Assessment], briefs: ResultSummaries | None
+    project: Project, assessments: Sequence[Assessment], summaries: ResultSummaries | None
 ) -> Orphans:
     """The missing links of the chain from hazard to verdict."""
     return Orphans(
@@ -137,7 +137,7 @@ def orphans(
         parents=tuple(_undeclared(project, assessments)),
         evidence=tuple(
             f"{id} has evidence, but is not among the requirements"
-            for id in unknown_ids(assessments, briefs)
+            for id in unknown_ids(assessments, summaries)
         ),
     )
 
@@ -175,9 +175,9 @@ def _undeclared(project: Project, assessments: Sequence[Assessment]) -> Iterable
 
 
 def unknown_ids(
-    assessments: Sequence[Assessment], briefs: ResultSummaries | None
+    assessments: Sequence[Assessment], summaries: ResultSummaries | None
 ) -> tuple[str, ...]:
     """The ids in the evidence that are not in the project."""
     ids = {assessment.id for assessment in assessments}
-    audited = briefs.by_requirement.keys() if briefs else ()
+    audited = summaries.by_requirement.keys() if summaries else ()
     return tuple(sorted({*audited} - ids, key=natural))

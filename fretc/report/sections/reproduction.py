@@ -294,7 +294,7 @@ def manifest(
         for artefact in section.artefacts
     )
     if inputs.evidence is not None:
-        name, content = phrases.place(inputs.evidence.file), inputs.evidence.content_sha256
+        name, content = phrases.place(inputs.evidence.file), inputs.evidence.sha256
         lines.append(Hash("evidence", name, content))
     lines.extend(
         Hash(kind, phrases.place(file.file), file.sha256)

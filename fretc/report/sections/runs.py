@@ -60,12 +60,12 @@ def run_key(result: ResultSummary | RunFacts) -> RunKey:
     return result.run, result.log
 
 
-def runs(briefs: ResultSummaries | None) -> dict[RunKey, AuditedFile]:
+def runs(summaries: ResultSummaries | None) -> dict[RunKey, AuditedFile]:
     """The runs of the evidence, numbered from 1 in its order."""
     numbered: dict[RunKey, AuditedFile] = {}
-    for facts in briefs.source.runs() if briefs else ():
+    for facts in summaries.source.runs() if summaries else ():
         bare = changed(facts, health=replace(facts.health, topics={}))
-        first = briefs.firsts.get(run_key(facts), 0) if briefs else 0
+        first = summaries.firsts.get(run_key(facts), 0) if summaries else 0
         run = AuditedFile(len(numbered) + 1, bare, bool(facts.health.topics), first)
         numbered.setdefault(run_key(facts), run)
     names = run_names([run.facts.run for run in numbered.values()])

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from fretc.audit.store.writer import write_document
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.command import Fretc, Run
 from tests.fretc.trends.nights import document, evidence, judged
+from tests.stores import write_document
 
 ROOT = Path(__file__).parents[3]
 MISSION = ROOT / "traces/mission-seed15.mcap"

@@ -13,13 +13,13 @@ from hypothesis import strategies as st
 from compiler.files.templating import template_root
 from fretc.audit.evidence.reader import EvidenceFile
 from fretc.audit.store.anywhere import source
-from fretc.audit.store.writer import write_document
 from fretc.coverage import record
 from fretc.coverage.coverage import Coverage, CoverageStatus, coverage
 from fretc.coverage.directions import is_complete
 from fretc.coverage.text_output import lines
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.fretc.coverage.evidence import KEYS, Shown, evidence, of_run
+from tests.stores import write_document
 
 SHOWN = st.none() | st.dictionaries(st.sampled_from(KEYS), st.integers(-5, 5))
 BETTER = (

@@ -13,10 +13,14 @@ from benchmarks.report import JSON, STORE, project, written
 from compiler.files.templating import to_json
 from compiler.project.project import Project
 from fretc.audit.evidence.reader import EvidenceFile
-from fretc.audit.evidence.result_summaries import EvidenceSource, ResultSummaries, brief, run_facts
+from fretc.audit.evidence.result_summaries import (
+    EvidenceSource,
+    ResultSummaries,
+    run_facts,
+    summary_of,
+)
 from fretc.audit.evidence.schema import Result
 from fretc.audit.store.anywhere import source
-from fretc.audit.store.writer import write_document
 from fretc.report.across.assembly import across
 from fretc.report.forms import json_text
 from fretc.report.forms.csv_rows import csv_text
@@ -31,6 +35,7 @@ from fretish.diagnostics.diagnostic import Diagnostic
 from tests.effort import FULL, some
 from tests.fretc.report import cases
 from tests.fretc.report.test_any_evidence import TEXTS, audits
+from tests.stores import write_document
 
 pytestmark = pytest.mark.filterwarnings("ignore:Generating overly large repr")
 
@@ -88,9 +93,11 @@ def whole(build: ReportBuild) -> tuple[Any, Details]:
 @pytest.mark.slow
 def test_a_source_counts_what_it_has_in_full(audited: Path) -> None:
     known = opened(audited)
-    briefs = [*known.briefs()]
-    results = dict(known.details(range(len(briefs))))
-    assert briefs == [(place, brief(result)) for place, result in enumerate(results.values())]
+    summaries = [*known.summaries()]
+    results = dict(known.details(range(len(summaries))))
+    assert summaries == [
+        (place, summary_of(result)) for place, result in enumerate(results.values())
+    ]
     assert [*results] == [*range(3 * RUNS)]
     runs = {run: [r for r in results.values() if r.run == run] for run in known_runs(results)}
     assert [*known.runs()] == [run_facts(of) for of in runs.values()]
@@ -209,7 +216,7 @@ def test_how_much_is_read_at_once_changes_nothing(
 
 
 def test_result_summaries_stand_by_requirement_in_their_order(audited: Path) -> None:
-    briefs = ResultSummaries.of(opened(audited)).by_requirement
-    assert {id: [place for place, _ in some] for id, some in briefs.items()} == {
+    summaries = ResultSummaries.of(opened(audited)).by_requirement
+    assert {id: [place for place, _ in some] for id, some in summaries.items()} == {
         f"R{n}": [*range(n, 3 * RUNS, 3)] for n in range(3)
     }

@@ -23,7 +23,6 @@ from fretc.audit.evidence.result_summaries import ResultSummaries
 from fretc.audit.evidence.schema import EvidenceDocument
 from fretc.audit.evidence.writer import text
 from fretc.audit.store.anywhere import read, source
-from fretc.audit.store.writer import write_document
 from fretc.report.make import make
 from fretc.traceability.chain import chains
 from fretc.traceability.lock import Lock, standings
@@ -34,6 +33,7 @@ from tests.command import Fretc, write
 from tests.effort import FULL, some
 from tests.fretc.logs.logs import MS, S, said
 from tests.fretc.logs.logs import write as write_log
+from tests.stores import write_document
 
 IDS = ("R1", "R2", "R3")
 FILES = {
@@ -523,7 +523,7 @@ def asked(fretc: Fretc) -> Said:
 def test_a_change_is_in_the_chains_of_what_is_made_of_it_and_of_nothing_else(
     reviewed: Fretc, base: Path
 ) -> None:
-    lock, evidence = read_lock(LOCK), briefs()
+    lock, evidence = read_lock(LOCK), summaries()
     assert isinstance(lock, Lock)
     for names in (*TOGETHER, *((name,) for name in REACHING)):
         for name in names:
@@ -531,7 +531,7 @@ def test_a_change_is_in_the_chains_of_what_is_made_of_it_and_of_nothing_else(
         project = load_folder("requirements")
         assert not isinstance(project, Diagnostic)
         of_evidence = any(name.startswith("evidence") for name in names)
-        found = chains(project, briefs() if of_evidence else evidence)
+        found = chains(project, summaries() if of_evidence else evidence)
         suspect = {one.chain.requirement for one in standings(found, lock) if one.suspects}
         change = CHANGES[names[0]]
         assert {one.requirement for one in found if one.outdated} == change.stale(False), names
@@ -543,7 +543,7 @@ def test_a_change_is_in_the_chains_of_what_is_made_of_it_and_of_nothing_else(
             shutil.copytree(base, ".", dirs_exist_ok=True)
 
 
-def briefs() -> ResultSummaries:
+def summaries() -> ResultSummaries:
     evidence = source("build/evidence")
     assert not isinstance(evidence, Diagnostic)
     return ResultSummaries.of(evidence)

@@ -15,10 +15,10 @@ from fretc.audit.evidence.reader import EvidenceFile
 from fretc.audit.evidence.reader import read as read_evidence
 from fretc.audit.outputs.summary import run_query
 from fretc.audit.outputs.table import parquet, read, row_of
-from fretc.audit.store.writer import write_document
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.fretc.audit.results import result as record
 from tests.fretc.report.cases import LOG, evidence, moment, project, result, violation
+from tests.stores import write_document
 
 
 @pytest.fixture(autouse=True)

@@ -6,7 +6,7 @@ from typing import Any
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fretc.audit.evidence.result_summaries import brief
+from fretc.audit.evidence.result_summaries import summary_of
 from fretc.audit.evidence.schema import Result
 from fretc.audit.outputs.totals import (
     COUNTED,
@@ -26,7 +26,7 @@ TRIALS = {"answered": 1, "failed": 0, "open": 0}
 
 def marks(results: Iterable[Result], refused: Collection[str] = ()) -> VerdictWords:
     """Those of these results."""
-    return VerdictWords.of(map(brief, results), (), refused)
+    return VerdictWords.of(map(summary_of, results), (), refused)
 
 
 def audits(most: int = 6) -> st.SearchStrategy[list[Result]]:

@@ -17,8 +17,13 @@ from fretc.audit.evidence.writer import text
 from fretc.audit.store.anywhere import read, source
 from fretc.audit.store.earlier_store import is_store, remove_tables
 from fretc.audit.store.reader import Store
-from fretc.audit.store.writer import write_document
 from fretish.diagnostics.diagnostic import Code, Diagnostic
+from tests.command import Fretc, write
+from tests.fretc.logs.logs import MS, X_TEXT, number
+from tests.fretc.logs.logs import write as write_log
+from tests.stores import write_document
+
+BINDINGS = f'{X_TEXT}\n[proposition.x]\nexpr = "x > 0 m"\nagg = "last"\n'
 
 STORED = Path(__file__).parents[3] / "data/earlier_store.zip"
 """A store, and the same evidence as a file; it has something in each column."""
@@ -58,6 +63,16 @@ def test_an_earlier_store_is_the_evidence_that_it_was(store: Path) -> None:
     assert not isinstance(found, Diagnostic), found.message
     assert text(found.document) == Path("evidence.json").read_text()
     assert found.sha256 == sha256((store / "manifest.json").read_bytes()).hexdigest()
+
+
+def test_an_audit_replaces_an_earlier_store(store: Path, fretc: Fretc) -> None:
+    (store / "own").write_text("precious")
+    write("requirements/r1.fret", "the sw shall always satisfy x")
+    write("requirements/bindings.toml", BINDINGS)
+    write_log(Path("a.mcap"), [number(1.0, 10**9 + tick * 100 * MS) for tick in range(4)])
+    assert fretc("audit", "a.mcap", "-o", "store/").status == 0
+    assert sorted(os.listdir(store)) == ["evidence.sqlite", "own"]
+    assert isinstance(source("store"), Store)
 
 
 def test_an_earlier_store_is_replaced_by_one_of_this_version(store: Path) -> None:

@@ -9,17 +9,17 @@ from typing import Any
 import pytest
 
 from compiler.files.records import decoded
-from fretc.audit.evidence.result_summaries import brief, run_facts
+from fretc.audit.evidence.result_summaries import run_facts, summary_of
 from fretc.audit.evidence.schema import EvidenceDocument
 from fretc.audit.evidence.writer import text
 from fretc.audit.store.anywhere import read, source
 from fretc.audit.store.container import StoreError, record_text
 from fretc.audit.store.reader import Store
-from fretc.audit.store.writer import runs_of, write_document
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.effort import some
 from tests.fretc.audit.store.test_hostile import with_record
 from tests.fretc.audit.store.test_whole_numbers import evidence, put
+from tests.stores import runs_of, write_document
 
 DOCUMENT = decoded(json.loads(evidence((("results", 0, "ticks"), 1))), EvidenceDocument)
 """One run with something in each field."""
@@ -83,7 +83,7 @@ def test_no_change_of_a_result_is_hidden(tmp_path: Path, monkeypatch: pytest.Mon
             accepted += 1
             assert text(whole.document) != before, (at, other)
             assert counted == (
-                [brief(each) for each in whole.results],
+                [summary_of(each) for each in whole.results],
                 [run_facts(run) for run in runs_of(whole.results)],
             )
     assert accepted > 0
@@ -94,6 +94,6 @@ def counts() -> tuple[list[Any], list[Any]] | None:
     found = source("store")
     assert isinstance(found, Store)
     try:
-        return [each for _, each in found.briefs()], [*found.runs()]
+        return [each for _, each in found.summaries()], [*found.runs()]
     except StoreError:
         return None

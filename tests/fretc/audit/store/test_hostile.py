@@ -19,11 +19,12 @@ from fretc.audit.store import container
 from fretc.audit.store.anywhere import read, source
 from fretc.audit.store.container import FILE, identity, rows
 from fretc.audit.store.reader import Store
-from fretc.audit.store.writer import is_store, remove, write_document
+from fretc.audit.store.writer import is_store, remove
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.command import made_once
 from tests.fretc.audit.results import result
 from tests.fretc.audit.store.test_law import document
+from tests.stores import write_document
 
 BROKEN = {"first_tick": 1, "last_tick": 2}
 RESULTS = (
@@ -268,7 +269,7 @@ def test_a_record_that_no_evidence_has_is_refused(store: Path, content: bytes) -
     refused(store)
     found = source(str(store))
     assert isinstance(found, Store)
-    for reading in (found.briefs, found.runs, found.tallies):
+    for reading in (found.summaries, found.runs, found.tallies):
         with pytest.raises(container.StoreError):
             [*reading()]
 

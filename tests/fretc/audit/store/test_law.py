@@ -10,14 +10,14 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from compiler.files.records import UNSET, decoded, replace, types
-from fretc.audit.evidence.result_summaries import brief, run_facts
+from fretc.audit.evidence.result_summaries import run_facts, summary_of
 from fretc.audit.evidence.schema import EvidenceDocument, Result
 from fretc.audit.evidence.writer import text
 from fretc.audit.store.container import record_text
 from fretc.audit.store.reader import Store, evidence, opened
-from fretc.audit.store.writer import runs_of, write_document
 from tests.effort import FULL
 from tests.fretc.audit.results import SHA, result
+from tests.stores import runs_of, write_document
 
 SHARED = ("run", "health", "labels")
 LARGE = 2**63
@@ -153,7 +153,7 @@ def test_times_of_a_damaged_log_are_kept(tmp_path: Path) -> None:
     good = result(run="b.mcap", verdict="satisfied")
     store = stored(tmp_path, document(late, good))
     assert evidence(store).results == (late, good)
-    assert [(one.run, one.end_ns) for _, one in store.briefs()] == [
+    assert [(one.run, one.end_ns) for _, one in store.summaries()] == [
         ("a.mcap", 2**64 - 1),
         ("b.mcap", None),
     ]
@@ -189,7 +189,7 @@ def test_evidence_comes_back_from_a_store_to_the_letter(
     found = evidence(store)
     assert text(found.document) == text(document)
     assert store.selection == (document.selection or None)
-    assert [*store.briefs()] == [*enumerate(map(brief, document.results))]
+    assert [*store.summaries()] == [*enumerate(map(summary_of, document.results))]
     assert [*store.runs()] == [*map(run_facts, runs_of(document.results))]
     for id in {each.requirement for each in document.results}:
         own = [(n, r) for n, r in enumerate(document.results) if r.requirement == id]

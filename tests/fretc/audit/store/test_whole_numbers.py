@@ -14,11 +14,11 @@ from fretc.audit.evidence.reader import EvidenceFile, read
 from fretc.audit.evidence.schema import EvidenceDocument, schema
 from fretc.audit.evidence.writer import text
 from fretc.audit.store.anywhere import read as read_anywhere
-from fretc.audit.store.writer import write_document
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.effort import some
 from tests.fretc.audit.results import SHA
 from tests.fretc.audit.store.test_law import bare
+from tests.stores import write_document
 
 Step = str | int
 Place = tuple[Step, ...]
