@@ -83,31 +83,47 @@ def periodically(seconds: float, look: Callable[[], None]) -> Iterator[None]:
     """Context in which the main thread calls a function every so many CPU seconds.
 
     Without timers of CPU time (Windows) a second thread counts seconds of the wall clock. The
-    function is called between two steps of Python, and its exceptions interrupt the block.
+    function is called between two steps of Python. Its first exception interrupts the block; from
+    then on, and after the block, a signal calls nothing.
     """
+    ended = Event()
 
     def handler(_number: int, _frame: FrameType | None) -> None:
-        look()
+        if ended.is_set():
+            return
+        try:
+            look()
+        except BaseException:
+            ended.set()  # nothing interrupts what follows, such as the end of this context
+            raise
 
     if sys.platform != "win32" and hasattr(signal, "setitimer"):
-        signal.signal(signal.SIGPROF, handler)  # Not reset: a late signal finds no budget.
+        signal.signal(signal.SIGPROF, handler)  # Not reset: a late signal would end the process.
         signal.siginterrupt(signal.SIGPROF, False)
         signal.setitimer(signal.ITIMER_PROF, seconds, seconds)
         try:
-            yield
+            with _set_after(ended):
+                yield
         finally:
             signal.setitimer(signal.ITIMER_PROF, 0)
         return
-    ended = Event()
     before = signal.signal(signal.SIGABRT, handler)
     thread = Thread(target=_interrupt, args=(seconds, ended), daemon=True)
     thread.start()
     try:
-        yield
+        with _set_after(ended):
+            yield
     finally:
-        ended.set()
         thread.join()
         signal.signal(signal.SIGABRT, before)
+
+
+@contextmanager
+def _set_after(event: Event) -> Iterator[None]:
+    try:
+        yield
+    finally:
+        event.set()
 
 
 def _interrupt(seconds: float, ended: Event) -> None:

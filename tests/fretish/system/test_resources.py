@@ -70,6 +70,39 @@ def test_the_exception_of_a_look_interrupts_the_block(monkeypatch: pytest.Monkey
         endless()
 
 
+def failing_look() -> None:
+    raise KeyError
+
+
+def raised(number: int) -> None:
+    """A block that a signal interrupts."""
+    with periodically(60, failing_look):
+        signal.raise_signal(number)
+
+
+def test_a_late_signal_of_the_timer_calls_nothing() -> None:
+    with periodically(60, failing_look):
+        pass
+    signal.raise_signal(signal.SIGPROF)
+    with pytest.raises(KeyError):
+        raised(signal.SIGPROF)
+    signal.raise_signal(signal.SIGPROF)
+
+
+def test_a_signal_while_the_thread_ends_interrupts_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    def join(thread: threading.Thread) -> None:
+        signal.raise_signal(signal.SIGABRT)
+        whole_join(thread)
+
+    whole_join = threading.Thread.join
+    monkeypatch.delattr(signal, "setitimer")
+    monkeypatch.setattr(threading.Thread, "join", join)
+    threads, before = threading.active_count(), signal.getsignal(signal.SIGABRT)
+    with pytest.raises(KeyError):
+        raised(signal.SIGABRT)
+    assert (signal.getsignal(signal.SIGABRT), threading.active_count()) == (before, threads)
+
+
 def test_exit_statuses_tell_of_time() -> None:
     ends = {-signal.SIGXCPU, -signal.SIGPROF, resources.OUT_OF_TIME}
     assert {s for s in range(-64, 256) if exceeded_time(s)} == ends
