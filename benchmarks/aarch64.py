@@ -1,8 +1,9 @@
 """fretc on aarch64, emulated: set it up in a folder, run commands and tests, and compare files.
 
-    python -m benchmarks.aarch64 FOLDER [--tests tests/fretish tests/monitors]
+    python -m benchmarks.aarch64 FOLDER [--tests tests/fretish tests/monitors] [--rust]
 
-It needs Debian's `qemu-user-static`, `apt-get` and `dpkg-deb`. Nothing outside of FOLDER changes.
+It needs Debian's `qemu-user-static`, `apt-get` and `dpkg-deb`, and its cross compilers of C for
+`--rust`, which compiles generated Rust for aarch64 and armv7. Nothing outside of FOLDER changes.
 Python and its libraries are Debian's for arm64, all others are wheels for aarch64. There is no
 Spot for aarch64. Each command also runs on this machine, and both must write the same files, but
 for measured seconds. Exit status 1: a status or a file differs, or a test fails.
@@ -50,7 +51,8 @@ def interpreter(folder: Path) -> Path:
     system, environment = folder / "system", folder / "environment"
     python = environment / "bin/python"
     if not python.exists():
-        _unpack(folder / "packages", system)
+        download(folder / "packages", ["arm64"], ["python3.11", "libstdc++6", "libgomp1"])
+        unpack(folder / "packages", "*", system)
         python.parent.mkdir(parents=True)
         real = system / "usr/bin/python3.11"
         settings = f"home = {real.parent}\ninclude-system-site-packages = false\n"
@@ -62,26 +64,55 @@ def interpreter(folder: Path) -> Path:
     return python
 
 
-def _unpack(packages: Path, system: Path) -> None:
-    """Download Debian's Python for arm64 with all that it needs, and unpack it."""
+def download(packages: Path, architectures: Sequence[str], names: Sequence[str]) -> None:
+    """Download packages of Debian with all that they need, as if nothing were installed."""
     for place in ("state/lists/partial", "cache/archives/partial"):
         (packages / place).mkdir(parents=True, exist_ok=True)
-    status = packages / "state/status"  # as if nothing were installed
+    status = packages / "state/status"
     status.touch()
-    options = {
-        "Dir::State": packages / "state",
-        "Dir::State::status": status,
-        "Dir::Cache": packages / "cache",
-        "APT::Architecture": "arm64",
-        "APT::Architectures::": "arm64",
-        "APT::Sandbox::User": "root",
-    }
-    apt = ["apt-get", "-qq", *(f"-o{name}={value}" for name, value in options.items())]
-    subprocess.run([*apt, "update"], check=True)
+    options = [
+        ("Dir::State", packages / "state"),
+        ("Dir::State::status", status),
+        ("Dir::Cache", packages / "cache"),
+        ("APT::Architecture", architectures[0]),
+        *(("APT::Architectures::", architecture) for architecture in architectures),
+        ("APT::Sandbox::User", "root"),
+    ]
+    apt = ["apt-get", "-qq", *(f"-o{name}={value}" for name, value in options)]
+    subprocess.run([*apt, "update"], check=False)  # an older list of packages may do
     install = ["install", "--yes", "--no-install-recommends", "--download-only"]
-    subprocess.run([*apt, *install, "python3.11", "libstdc++6", "libgomp1"], check=True)
-    for package in sorted((packages / "cache/archives").glob("*.deb")):
-        subprocess.run(["dpkg-deb", "-x", package, system], check=True)
+    subprocess.run([*apt, *install, *names], check=True)
+
+
+def unpack(packages: Path, pattern: str, folder: Path) -> None:
+    """Unpack the downloaded packages whose file names match."""
+    for package in sorted((packages / "cache/archives").glob(f"{pattern}.deb")):
+        subprocess.run(["dpkg-deb", "-x", package, folder], check=True)
+
+
+def rust(folder: Path) -> Path:
+    """A folder with a `rustc` that compiles for this machine, aarch64 and armv7."""
+    packages, system, program = folder / "rust-packages", folder / "rust", folder / "bin/rustc"
+    if not program.exists():
+        names = ["rustc", "libstd-rust-dev:arm64", "libstd-rust-dev:armhf"]
+        download(packages, ["amd64", "arm64", "armhf"], names)
+        for pattern in ("rustc_*", "libstd-rust-*", "libllvm*"):
+            unpack(packages, pattern, system)
+        program.parent.mkdir(exist_ok=True)
+        libraries = system / "usr/lib/x86_64-linux-gnu"
+        script = f'#!/bin/sh\nLD_LIBRARY_PATH={libraries} exec {system}/usr/bin/rustc "$@"\n'
+        program.write_text(script, encoding="utf-8")
+        program.chmod(0o755)
+    return program.parent
+
+
+def test_rust(folder: Path) -> bool:
+    """Whether generated Rust tells on both processors what Python tells, at each tick."""
+    path = f"{rust(folder)}{os.pathsep}{os.environ['PATH']}"
+    file = "tests/compiler/targets/rust/test_rust_monitor.py"
+    command = [sys.executable, "-m", "pytest", "-q", "-n0", "-rs", "-k", "processors", file]
+    done = subprocess.run(command, cwd=ROOT, env={**os.environ, "PATH": path}, check=False)
+    return done.returncode == 0
 
 
 def install(python: Path) -> None:
@@ -167,12 +198,15 @@ def main() -> int:
     parser = argparse.ArgumentParser(description="Run fretc on an emulated aarch64.")
     parser.add_argument("folder", type=Path, help="where everything is installed and run")
     parser.add_argument("--tests", nargs="*", default=[], help="folders of tests, also to be run")
+    parser.add_argument("--rust", action="store_true", help="also test generated Rust")
     options = parser.parse_args()
     folder = options.folder.resolve()
     python = interpreter(folder)
     install(python)
     same = compare(folder, python)
-    return 0 if (not options.tests or test(python, options.tests, folder)) and same else 1
+    same &= not options.rust or test_rust(folder)
+    same &= not options.tests or test(python, options.tests, folder)
+    return 0 if same else 1
 
 
 if __name__ == "__main__":

@@ -6,16 +6,44 @@ import re
 import struct
 import subprocess
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.rust.monitor import TARGET
 from compiler.targets.target import TargetOptions
 from tests.c_monitors import VERDICTS, Outcome, Reading, Rows
-from tests.programs import installed
+from tests.programs import installed, leave_out
 
 STRICT = ["--edition", "2021", "-D", "warnings", "-C", "debug-assertions=on"]
 _TRUTHS = (False, True, None)
+
+
+@dataclass(frozen=True)
+class ArmProcessor:
+    """A processor for which `rustc` compiles, with the linker and the emulator for it."""
+
+    target: str
+    linker: str
+    emulator: str
+
+    @property
+    def options(self) -> tuple[str, ...]:
+        """Options of `rustc`; the test is skipped where the library for this target is missing."""
+        command = [installed("rustc"), "--print", "sysroot"]
+        root = subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
+        if not Path(root, "lib/rustlib", self.target).exists():
+            leave_out(
+                f"needs Rust's library for {self.target}: python -m benchmarks.aarch64 --rust"
+            )
+        linker = f"linker={installed(self.linker)}"
+        return ("--target", self.target, "-C", linker, "-C", "target-feature=+crt-static")
+
+
+ARM = (
+    ArmProcessor("aarch64-unknown-linux-gnu", "aarch64-linux-gnu-gcc", "qemu-aarch64-static"),
+    ArmProcessor("armv7-unknown-linux-gnueabihf", "arm-linux-gnueabihf-gcc", "qemu-arm-static"),
+)
 
 
 def crate(*requirements: FormalizedRequirement) -> Mapping[str, str]:
@@ -48,6 +76,7 @@ def outcomes(
     libraries: Sequence[str],
     traces: Sequence[tuple[int, Rows]],
     lints: Sequence[str] = (),
+    arm: ArmProcessor | None = None,
 ) -> list[list[list[Outcome]]]:
     """Of each trace all outcomes at each tick.
 
@@ -56,21 +85,24 @@ def outcomes(
         libraries: texts of `lib.rs`.
         traces: the place of a library, and rows in the order of its inputs.
         lints: further options for the libraries.
+        arm: compile for this processor, and run the program under emulation.
     """
-    rustc = installed("rustc")
+    rustc = [installed("rustc"), *(arm.options if arm else ())]
     for place, text in enumerate(libraries):
         (folder / f"m{place}.rs").write_text(text, encoding="utf-8")
         kind = ["--crate-type", "rlib", "--crate-name", f"m{place}"]
-        subprocess.run([rustc, *STRICT, *lints, *kind, f"m{place}.rs"], cwd=folder, check=True)
+        subprocess.run([*rustc, *STRICT, *lints, *kind, f"m{place}.rs"], cwd=folder, check=True)
     (folder / "main.rs").write_text(_main(libraries), encoding="utf-8")
     externs = [f"--extern=m{place}=libm{place}.rlib" for place in range(len(libraries))]
-    subprocess.run([rustc, "--edition", "2021", *externs, "main.rs"], cwd=folder, check=True)
+    subprocess.run([*rustc, "--edition", "2021", *externs, "main.rs"], cwd=folder, check=True)
     data = b"".join(
         struct.pack("=II", place, len(rows))
         + bytes(_TRUTHS.index(value) for row in rows for value in row)
         for place, rows in traces
     )
-    done = subprocess.run([folder / "main"], input=data, capture_output=True, check=True)
+    launcher = [installed(arm.emulator)] if arm else []
+    program = [*launcher, str(folder / "main")]
+    done = subprocess.run(program, input=data, capture_output=True, check=True)
     readings = struct.iter_unpack("=i7?i7?BBB", done.stdout)
     found = (
         Outcome(Reading(*r[:8]), Reading(*r[8:16]), VERDICTS[r[16]], _TRUTHS[r[17]], _TRUTHS[r[18]])

@@ -25,7 +25,7 @@ from tests.effort import FULL, some
 from tests.emitting import refused
 from tests.monitoring import requirement
 from tests.programs import installed
-from tests.rust_monitors import crate, fields, library, outcomes, write
+from tests.rust_monitors import ARM, ArmProcessor, crate, fields, library, outcomes, write
 
 WITHIN = "whenever p the sw shall within 100 ticks satisfy q"
 
@@ -60,6 +60,19 @@ def test_any_sentence_tells_the_same_at_each_tick(tmp_path: Path) -> None:
     told = outcomes(tmp_path, [library(crate(*group)) for group in groups], traces)
     for (place, trace), found in zip(traces, told, strict=True):
         assert found == [*of_python(machines[place], trace)], place
+
+
+@pytest.mark.slow
+@each("arm", ARM)
+def test_monitors_for_processors_of_arm_tell_the_same(tmp_path: Path, arm: ArmProcessor) -> None:
+    """The second has words of 32 bits."""
+    requirements, choose = of_requirements(), random.Random(arm.target)
+    machine, text = monitors(requirements), library(crate(*requirements))
+    width = len(machine.PROPOSITIONS)
+    traces = [rows(choose, width, choose.choice([12, 60, 140])) for _ in range(20)]
+    told = outcomes(tmp_path, [text], [(0, trace) for trace in traces], arm=arm)
+    for trace, outcome in zip(traces, told, strict=True):
+        assert outcome == [*of_python(machine, trace)]
 
 
 @pytest.mark.slow
