@@ -19,6 +19,7 @@ import importlib
 import subprocess
 import sys
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -230,15 +231,15 @@ def measured(path: str, *, peers: bool) -> float:
     mine = least(lambda: ours(path, found, Integrity.INDEX))
     rows = {"columns": mine}
     for integrity in (Integrity.HASH, Integrity.FULL):
-        rows[f"columns, --integrity {integrity}"] = least(lambda i=integrity: ours(path, found, i))
+        rows[f"columns, --integrity {integrity}"] = least(partial(ours, path, found, integrity))
     for integrity in Integrity:
         judged = plan(integrity)
-        rows[f"audit, --integrity {integrity}"] = least(lambda j=judged: audited(path, j))
+        rows[f"audit, --integrity {integrity}"] = least(partial(audited, path, judged))
     if peers:
         recording = ours(path, found, Integrity.INDEX)
         for reader in (official, rosbags):
             assert same(recording, reader(path)), reader
-            rows[reader.__name__] = least(lambda r=reader: r(path), 1)
+            rows[reader.__name__] = least(partial(reader, path), 1)
     for name, taken in rows.items():
         print(f"  {name:<26} {taken:8.4f} s  {taken / bottom:6.1f} x floor {taken / mine:6.1f} x")
     for what in ("columns", "audit"):

@@ -24,7 +24,8 @@ from compiler.project.folder import load
 from compiler.project.paths import expanded_paths
 from compiler.targets.target import TargetOptions
 from fretish.diagnostics.diagnostic import Diagnostic
-from tests.ros1 import PYTHON, missing, ros, until
+from tests.programs import DEBIANS_PYTHON
+from tests.ros1 import ros, ros1_or_skip, until
 
 HERE = Path(__file__).parent
 BINDINGS = """
@@ -104,13 +105,13 @@ def measured(made: Path, kind: str, scans: int) -> str:
         here.master()
         here.start(str(made / "scripts/interceptor.py"))
         node = here.start(str(made / "scripts/monitor_node.py"))
-        by_hand = here.start(PYTHON, str(HERE / "live_robot.py"), "by-hand", kind)
-        here.start(PYTHON, str(HERE / "live_robot.py"), "listener")
+        by_hand = here.start(DEBIANS_PYTHON, str(HERE / "live_robot.py"), "by-hand", kind)
+        here.start(DEBIANS_PYTHON, str(HERE / "live_robot.py"), "listener")
         until(
             "they listen",
             lambda: {"/scan", "/stop", "/by_hand"} <= set((here.state() or [{}, {}])[1]),
         )
-        words = (PYTHON, str(HERE / "live_robot.py"), "lidar", str(scans))
+        words = (DEBIANS_PYTHON, str(HERE / "live_robot.py"), "lidar", str(scans))
         lidar = here.start(*words, stdout=subprocess.PIPE)
         assert lidar.stdout is not None
         assert lidar.stdout.readline() == "begun\n"
@@ -134,7 +135,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--scans", type=int, default=800)
     scans = parser.parse_args().scans
-    assert not missing(), missing()
+    ros1_or_skip()
     head = "p50 | p99 | max | by hand: p50 | p99 | max | zero: p50 | p99 | max"
     print(f"| stop, ms: | {head} | no answer | CPU | by hand | ratio |\n{'|---' * 14}|")
     for kind, time, count in itertools.product(KINDS, ("header.stamp", "log_time"), (1, 20)):

@@ -9,10 +9,12 @@ from __future__ import annotations
 
 import argparse
 import gc
+import operator
 import time
 import tracemalloc
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -119,7 +121,8 @@ def truths(machine: Monitor, literals: Mapping[str, int], every: int) -> int:
     """
     (signals,) = machine.columns(every, **literals)
     broken = once(signals.violation, 0, None, every) if signals.violation else 0
-    return every ^ (broken | signals.violated_if_ended)
+    open_ended: int = signals.violated_if_ended
+    return every ^ (broken | open_ended)
 
 
 def verdict(machine: Monitor, columns: Mapping[str, Column], ticks: int) -> object:
@@ -186,11 +189,11 @@ def offline(ticks: int) -> dict[str, Rates]:
         columns, every = from_numpy(arrays), (1 << ticks) - 1
         literals = literals_of(machine, columns, every)
         a, b = columns["a"].true, columns["b"].true
-        one, add = repeated(lambda a=a, b=b: a & b), repeated(lambda a=a, b=b: a + b)
-        truth = repeated(lambda m=machine, x=literals, e=every: truths(m, x, e))
-        short = repeated(lambda m=machine, x=columns: verdict(m, x, ticks))
-        whole = repeated(lambda m=machine, x=columns: lists(m, x, ticks))
-        converted = short + repeated(lambda x=arrays: from_numpy(x))
+        one, add = repeated(partial(operator.and_, a, b)), repeated(partial(operator.add, a, b))
+        truth = repeated(partial(truths, machine, literals, every))
+        short = repeated(partial(verdict, machine, columns, ticks))
+        whole = repeated(partial(lists, machine, columns, ticks))
+        converted = short + repeated(partial(from_numpy, arrays))
         rates = Rates(*(ticks / spent / 1e6 for spent in (short, converted, whole, truth)))
         found[name] = rates
         (outcome,) = evaluate(machine, columns, ticks)
@@ -224,15 +227,15 @@ def bounds(ticks: int) -> None:
     """What a long bound costs, against one of 10."""
     arrays = {**WORKLOADS["W2"].columns(ticks)}
     columns, every = from_numpy(arrays), (1 << ticks) - 1
-    rows = []
+    rows = list[tuple[str, float, float]]()
     for bound in (10, 100, 1_000, 100_000):
         machine = monitor(requirement(f"whenever a sw shall within {bound} ticks satisfy b"))
         past = monitor(always(A, f.once(B, f.Interval(0, bound))))
-        times = []
-        for made in (machine, past):
-            literals = literals_of(made, columns, every)
-            times.append(repeated(lambda m=made, x=literals: truths(m, x, every)))
-        rows.append([f"{bound:,}", *times])
+        within, since = (
+            repeated(partial(truths, made, literals_of(made, columns, every), every))
+            for made in (machine, past)
+        )
+        rows.append((f"{bound:,}", within, since))
     first = rows[0]
     table(
         f"Bounds, {ticks:,} ticks: ms and multiples of a bound of 10",
@@ -308,10 +311,12 @@ def online() -> None:
         ]
         by_name = [[dict(zip(names, row, strict=True)) for row in x] for x in (known, unknown)]
         call = stepping(empty, by_name[0])
-        batch = [
-            seconds(lambda m=made, x=x: monitor(m).run(x)) / STEPS * 1e6 for x in (known, unknown)
-        ]
-        steps = [stepping(monitor(made).step, x) for x in by_name]
+        batch = [seconds(partial(_run, made, x)) / STEPS * 1e6 for x in (known, unknown)]
+        single: Any = monitor(made)
+        steps = []
+        for x in by_name:
+            single.reset()
+            steps.append(stepping(single.step, x))
         rows.append(
             (
                 name,
@@ -477,7 +482,7 @@ def many() -> None:
         generator = np.random.default_rng(1)
         values = generator.random((ticks, len(machine.PROPOSITIONS))) < 0.3
         table_rows = [tuple(row) for row in values.tolist()]
-        spent = seconds(lambda m=machine, x=table_rows: m.run(x), 3) / ticks / count * 1e6
+        spent = seconds(partial(machine.run, table_rows), 3) / ticks / count * 1e6
         named = [dict(zip(machine.PROPOSITIONS, row, strict=True)) for row in table_rows]
         parts = [load("m", text(*requirements[i : i + 20])) for i in range(0, count, 20)]
         rows.append(
@@ -490,9 +495,9 @@ def many() -> None:
                 *(f"{_steps(each, named) / count:.3f}" for each in ([machine], parts)),
             )
         )
-    head = ("requirements", "propositions", "ms each to write", "kB", "run us each", "step us each")
-    head = (*head, "in files of 20")
-    table("Many requirements in one file (mixed, bounds to 1 000)", head, rows)
+    head = ("requirements", "propositions", "ms each to write", "kB", "run us each")
+    head_of_steps = ("step us each", "in files of 20")
+    table("Many requirements in one file (mixed, bounds to 1 000)", (*head, *head_of_steps), rows)
 
 
 def _steps(machines: Sequence[Any], rows: Sequence[Mapping[str, bool]]) -> float:
@@ -513,6 +518,11 @@ def _steps(machines: Sequence[Any], rows: Sequence[Mapping[str, bool]]) -> float
 # Memory and compiling -------------------------------------------------------------------------
 
 
+def _run(made: FormalizedRequirement, rows: Sequence[Sequence[bool | None]]) -> object:
+    machine: Any = monitor(made)
+    return machine.run(rows)
+
+
 def memory() -> None:
     """What a monitor holds after 10^3 and after 10^7 ticks."""
     machine = monitor(requirement("in c mode, upon a sw shall within 1000 ticks satisfy b"))
@@ -529,12 +539,17 @@ def memory() -> None:
     print(f"\nMemory: {after - before:+,} bytes from 10^3 to {machine.tick + 1:,} ticks")
 
 
+def _compile(sentence: str, times: int) -> None:
+    for _ in range(times):
+        text(requirement(sentence))
+
+
 def compiling() -> None:
     """From a sentence to the text of its monitor, after import."""
     rows = []
     for bound in (10, 10**6):
         sentence = f"in m mode, upon p sw shall within {bound} ticks satisfy q"
-        spent = seconds(lambda s=sentence: [text(requirement(s)) for _ in range(20)]) / 20
+        spent = seconds(partial(_compile, sentence, 20)) / 20
         rows.append((f"{bound:,}", f"{spent * 1e3:.2f}"))
     table("Compiling one requirement", ("bound", "ms"), rows)
 

@@ -252,12 +252,12 @@ def written(folder: Path, requirements: int, runs: int, share: float, form: str)
             file.write("]}")
         return
     (folder / STORE).mkdir()
-    file = StoreFile(folder / STORE / "unfinished-1.sqlite")
+    store = StoreFile(folder / STORE / "unfinished-1.sqlite")
     for place, run in enumerate(of_runs):
-        file.put(*packed(place, decoded(run, list[Result])))
+        store.put(*packed(place, decoded(run, list[Result])))
     document = decoded({**head(known), "results": []}, EvidenceDocument)
-    complete(file.path, document, file.close())
-    publish(file.path)
+    complete(store.path, document, store.close())
+    publish(store.path)
 
 
 def report(folder: Path, requirements: int, form: str) -> tuple[float, float, float, float]:

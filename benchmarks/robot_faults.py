@@ -272,7 +272,7 @@ def ours(subject: Subject) -> list[Run]:
 
 def by_flips(subject: Subject) -> list[Run]:
     """For each atom a shortest accepted word that one flip of it makes a rejected one."""
-    runs = []
+    runs = list[Run]()
     for each in requirements(subject):
         for atom in each.watched:
             bench = RequirementModel(each, (), (), Budget(60))

@@ -38,6 +38,8 @@ MORE = (
     "after m mode whenever a the sw shall at the next timepoint satisfy q",
 )
 Valuation = tuple[bool, ...]
+FlipState = tuple[reference.ReferenceState, reference.ReferenceState, bool]
+"""States of both words, and whether an atom of the second has been flipped."""
 
 
 def sentences() -> list[FormalizedRequirement]:
@@ -45,7 +47,7 @@ def sentences() -> list[FormalizedRequirement]:
     paths = requirement_files(str(MISSION))
     assert not isinstance(paths, Diagnostic)
     return [
-        *load(paths, None).requirements,
+        *load(paths, None).formalized,
         *(requirement(f"X{i}", text) for i, text in enumerate(MORE, 1)),
     ]
 
@@ -63,9 +65,11 @@ def by_flips(requirement: FormalizedRequirement) -> Iterator[RunColumns]:
     """For each atom a shortest accepted word that one flip of it makes a rejected one."""
     template = reference.template(requirement.sentence, requirement.ticks or 0)
     letters = letters_by_valuation(requirement.sentence, requirement.watched)
-    start = (reference.initial(template), reference.initial(template), False)
+    initial = reference.initial(template)
     for place in range(len(requirement.watched)):
-        seen, waiting = {start}, deque([(start, ())])
+        start: FlipState = (initial, initial, False)
+        seen = {start}
+        waiting = deque[tuple[FlipState, tuple[Valuation, ...]]]([(start, ())])
         found: tuple[Valuation, ...] | None = None
         while waiting and found is None:
             (own, other, is_flipped), word = waiting.popleft()
@@ -76,7 +80,7 @@ def by_flips(requirement: FormalizedRequirement) -> Iterator[RunColumns]:
                     continue
                 changed = tuple(v ^ (i == place) for i, v in enumerate(row)) if flips else row
                 after = reference.step(template, own, *letters[row])
-                twin = other and reference.step(template, other, *letters[changed])
+                twin = reference.step(template, other, *letters[changed])
                 if after is None:
                     continue
                 if reference.accepts(template, after) and not (
@@ -84,8 +88,10 @@ def by_flips(requirement: FormalizedRequirement) -> Iterator[RunColumns]:
                 ):
                     found = (*word, row)
                     break
+                if twin is None:
+                    continue
                 key = (after, twin, is_flipped or bool(flips))
-                if twin is not None and key not in seen:
+                if key not in seen:
                     seen.add(key)
                     waiting.append((key, (*word, row)))
         if found is not None:

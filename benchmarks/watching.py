@@ -69,7 +69,7 @@ def audited(plan: Plan, log: str) -> float:
 
 def pending(folder: Path) -> float:
     """Nanoseconds of one call, of the first requirement."""
-    requirement = read_project(folder).requirements[0]
+    requirement = read_project(folder).formalized[0]
     module = executed(monitor.text(requirement), "pending")
     running = module.MONITOR()
     running.advance([dict.fromkeys(running.PROPOSITIONS, True)])

@@ -54,8 +54,9 @@ def _measure(task: Task, rounds: int) -> None:
 
 def _run(program: Path, rows: Path, shape: Sequence[int]) -> list[str]:
     """The lines that it prints."""
-    command = [program, rows, *map(str, shape)]
-    return subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines()
+    command = [str(program), str(rows), *map(str, shape)]
+    done = subprocess.run(command, check=True, capture_output=True, text=True)
+    return done.stdout.splitlines()
 
 
 def _print(

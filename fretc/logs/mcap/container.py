@@ -177,7 +177,7 @@ def _zstd(data: bytes, most: int) -> bytes:
 
 def unpacked_lz4(data: bytes | memoryview, most: int) -> bytes:
     """The unpacked bytes, at most so many."""
-    import lz4.frame  # type: ignore[import-untyped]
+    import lz4.frame
 
     return bytes(lz4.frame.LZ4FrameDecompressor().decompress(data, max_length=most))
 
