@@ -13,10 +13,12 @@ from fretc.commands.opening import print_excluded
 from fretc.terminal.options import (
     PATH,
     analysis_option,
+    bindings_option,
     evidence_option,
     evidence_path,
     extras,
     format_option,
+    hazards_option,
     is_given,
     path_option,
     requirements_option,
@@ -65,6 +67,8 @@ if TYPE_CHECKING:
     " day of SOURCE_DATE_EPOCH, else today]",
 )
 @requirements_option
+@bindings_option
+@hazards_option
 @evidence_option
 @verification_option
 @analysis_option
@@ -79,6 +83,8 @@ def lock(
     comment: str,
     day: str | None,
     requirements: str,
+    bindings: str | None,
+    hazards: str | None,
     evidence: str | None,
     verification: str | None,
     analysis: str | None,
@@ -101,6 +107,7 @@ def lock(
     Example: fretc lock --reviewer "A. Meier" --role "safety engineer" --comment "first review"
     """
     from compiler.files.templating import to_json
+    from compiler.project.folder import load_folder
     from fretc.traceability.lock import (
         AcceptedVerdicts,
         Lock,
@@ -120,7 +127,8 @@ def lock(
         fail(diagnostic("not_a_date", day=day))
     if is_in_future(day):
         fail(diagnostic("review_in_future", day=day))
-    project, chains, refuted = _chains(requirements, evidence, verification, analysis, accept=True)
+    project = or_fail(load_folder(requirements, bindings, hazards))
+    chains, refuted = _chains(project, requirements, evidence, verification, analysis, accept=True)
     refused = _refused(project)
     where = path or _beside(requirements)
     before = _read(where, must=False)
@@ -166,6 +174,8 @@ def _signatures(
 @click.command()
 @click.argument("baseline", required=False, type=PATH, metavar="[BASELINE]")
 @requirements_option
+@bindings_option
+@hazards_option
 @evidence_option
 @verification_option
 @analysis_option
@@ -173,6 +183,8 @@ def _signatures(
 def diff(
     baseline: str | None,
     requirements: str,
+    bindings: str | None,
+    hazards: str | None,
     evidence: str | None,
     verification: str | None,
     analysis: str | None,
@@ -187,10 +199,12 @@ def diff(
     Example: fretc diff
     """
     from compiler.files.templating import to_json
+    from compiler.project.folder import load_folder
     from fretc.traceability.comparison import as_record, differences, text
     from fretc.traceability.lock import Lock, standings
 
-    project, chains, _ = _chains(requirements, evidence, verification, analysis)
+    project = or_fail(load_folder(requirements, bindings, hazards))
+    chains, _ = _chains(project, requirements, evidence, verification, analysis)
     refused = _refused(project)
     base = _read(baseline or _beside(requirements), must=True)
     assert base is not None
@@ -222,23 +236,24 @@ def _refused(project: Project) -> Mapping[str, Sequence[Diagnostic]]:
 
 
 def _chains(
+    project: Project,
     requirements: str,
     evidence: str | None,
     verification: str | None,
     analysis: str | None,
     *,
     accept: bool = False,
-) -> tuple[Project, Sequence[Chain], Collection[str]]:
-    """The project, its chains, and the requirements that all runs together refute.
+) -> tuple[Sequence[Chain], Collection[str]]:
+    """The chains of the project, and the requirements that all runs together refute.
 
     Args:
-        requirements: folder or file of the requirements.
+        project: what was read.
+        requirements: folder or file of the requirements, for what is printed.
         evidence: path of the evidence; None: the default path.
         verification: path of the proofs.
         analysis: path of the analysis.
         accept: whether the results will be accepted, so that a store is checked in full.
     """
-    from compiler.project.folder import load_folder
     from fretc.analysis.evidence import known as known_analysis
     from fretc.audit.evidence.result_summaries import ResultSummaries
     from fretc.audit.measurements.confidence_intervals import REFUTED
@@ -246,7 +261,6 @@ def _chains(
     from fretc.traceability.chain import chains
     from fretc.verification.reader import known
 
-    project = or_fail(load_folder(requirements))
     proofs = or_fail(known(verification))
     analyzed = or_fail(known_analysis(analysis))
     read = required_source if is_given("evidence") else source
@@ -255,11 +269,11 @@ def _chains(
         print_project_diagnostics([*project.diagnostics, audited], requirements)
         if audited.is_error:
             raise SystemExit(EXIT_USAGE)
-        return project, chains(project, None, proofs=proofs, analyzed=analyzed), ()
+        return chains(project, None, proofs=proofs, analyzed=analyzed), ()
     print_project_diagnostics(project.diagnostics, requirements)
     refuted = {one.requirement for one in audited.probabilities if one.answer == REFUTED}
     of_all = chains(project, ResultSummaries.of(audited), proofs=proofs, analyzed=analyzed)
-    return project, of_all, refuted
+    return of_all, refuted
 
 
 def _chosen(

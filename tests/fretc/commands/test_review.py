@@ -59,6 +59,21 @@ def test_a_changed_threshold_is_told_with_the_links_below_it(fretc: Fretc, folde
     )
 
 
+def test_bindings_and_hazards_of_another_folder_are_reviewed(fretc: Fretc, folder: Path) -> None:
+    options = []
+    for name in ("bindings", "hazards"):
+        (folder / f"{name}.toml").rename(f"{name}.toml")
+        options += [f"--{name}", f"{name}.toml"]
+    run = fretc("lock", *BY, *ON, *options)
+    assert (run.status, "accepted R1: satisfied in 1 run" in run.err) == (0, True)
+    assert fretc("diff", *options).out == "R1  as it was reviewed\n"
+    bindings = Path("bindings.toml")
+    bindings.write_text(bindings.read_text().replace("< 5 cm", "< 90 cm"))
+    run = fretc("diff", *options)
+    assert run.status == 3
+    assert "near: clearance < 5 cm → 90 cm" in run.out
+
+
 def test_another_verdict_is_told(fretc: Fretc, folder: Path) -> None:
     assert fretc("lock", *BY, *ON).status == 0
     project = cases.project(folder)

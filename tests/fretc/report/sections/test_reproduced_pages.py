@@ -37,7 +37,7 @@ AXES = (
     ("beside", "elsewhere"),
     ("none", "waivers", "lock"),
     ("evidence.json", "evidence"),
-    ("", "1767225600"),
+    ("", "4070908800"),
 )
 """Analysis, verification, play, options of the audit, the place of the bindings and of the other
 files, reviews, the form of the evidence, and `SOURCE_DATE_EPOCH`."""
@@ -88,9 +88,11 @@ def test_the_printed_commands_make_the_same_page_in_another_folder(
         options += ["--waivers", "other/waivers.toml"] if place != "beside" else []
     if reviews == "lock":
         accept = ["--reviewer", "Ada", "--role", "QA", "--comment", "fine", "--accept-violations"]
-        there = [] if place == "beside" else ["--lock", "other/fretc.lock"]
-        run = fretc("lock", "--requirements", "req", "--evidence", evidence, *accept, *there)
-        options += there if run.status == 0 else []
+        files = ["--hazards", "other/hazards.toml"] if place != "beside" else []
+        there = ["--lock", "other/fretc.lock"] if place != "beside" else []
+        run = fretc("lock", *of, "--evidence", evidence, *accept, *files, *there)
+        assert run.status == 0, run.err
+        options += there
     if epoch:
         monkeypatch.setenv("SOURCE_DATE_EPOCH", epoch)
     first = fretc("report", *options, "--html", "one.html", "--json", "one.json")
