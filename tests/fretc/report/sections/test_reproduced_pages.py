@@ -42,7 +42,7 @@ AXES = (
 """Analysis, verification, play, options of the audit, the place of the bindings and of the other
 files, reviews, the form of the evidence, and `SOURCE_DATE_EPOCH`."""
 COMBINATIONS = pairwise(*AXES)[:: 17 if FULL else 1]
-"""All 3 072 would take two CPU hours; of these every seventeenth holds most triples of choices."""
+"""All 3 072 would take two CPU hours; every seventeenth holds any three choices."""
 
 
 def project(place: str) -> list[str]:
