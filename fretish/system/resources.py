@@ -6,6 +6,8 @@
 | end by CPU time | system | system | thread |
 | end by memory | system | thread | thread |
 
+In WebAssembly there are neither timers nor threads: whoever runs Python there sets the limits.
+
 A thread notices an excess only when a library lets Python's threads run. Callers have a limit on
 the wall clock, too.
 """
@@ -82,10 +84,14 @@ def address_space() -> int:
 def periodically(seconds: float, look: Callable[[], None]) -> Iterator[None]:
     """Context in which the main thread calls a function every so many CPU seconds.
 
-    Without timers of CPU time (Windows) a second thread counts seconds of the wall clock. The
+    Without timers of CPU time (Windows) a second thread counts seconds of the wall clock. In
+    WebAssembly the function is never called. The
     function is called between two steps of Python. Its first exception interrupts the block; from
     then on, and after the block, a signal calls nothing.
     """
+    if sys.platform == "emscripten":
+        yield
+        return
     ended = Event()
 
     def handler(_number: int, _frame: FrameType | None) -> None:
