@@ -15,8 +15,8 @@ from tests.each import each
 ROOT = Path(__file__).parent.parent
 ORDER = """
 monitors.kernel  monitors
-fretish.system  fretish.diagnostics  fretish.reading  fretish.error_rules  fretish  fretish.bindings
-fretish.bindings.tables
+fretish.classes  fretish.system  fretish.diagnostics  fretish.reading  fretish.error_rules  fretish
+fretish.bindings  fretish.bindings.tables
 compiler.files  compiler.logic.diagrams  compiler.logic.ordering  compiler.logic.spelling
 compiler.logic  compiler.formalization  compiler.formalization.numbers
 compiler.situations  compiler.project  compiler.agents  compiler.program  compiler.signals

@@ -15,7 +15,6 @@ import lzma
 import zipfile
 import zlib
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -24,6 +23,7 @@ from xml.etree import ElementTree
 from compiler.files.checked_json import SchemaError, plain
 from compiler.files.settings import Settings
 from compiler.files.text_files import open_regular
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.extras import missing_extra
 from fretish.diagnostics.messages import diagnostic

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from enum import StrEnum
 
 from compiler.files.records import UnsetType
@@ -16,6 +15,7 @@ from fretc.audit.evidence.result_summaries import EvidenceSource
 from fretc.audit.evidence.schema import Moment, RequirementRecord, Situations
 from fretc.audit.evidence.schema import SituationRecord as Named
 from fretc.coverage.least_runs import LeastRuns, least_runs
+from fretish.classes.frozen import dataclass
 
 
 class CoverageStatus(StrEnum):

@@ -6,10 +6,10 @@ file (`kind = "fret"`, the default; `declared` holds its bindings) or a bindings
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code
 from fretish.diagnostics.messages import code_tables
 

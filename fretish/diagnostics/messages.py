@@ -5,11 +5,11 @@ The name of a message is unique among all codes, and gives its code, severity, t
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
 
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.fixes import Fix
 from fretish.diagnostics.source import Span

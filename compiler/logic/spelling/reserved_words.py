@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Container
-from dataclasses import dataclass
+
+from fretish.classes.frozen import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from math import isinf, isnan
 from statistics import median
 from typing import TypeVar, cast
@@ -43,6 +42,7 @@ from fretc.audit.phases.by_shift import PhaseInterval, Phases
 from fretc.logs.signals.enum_values import enum_value
 from fretc.logs.signals.samples import Recording, Samples
 from fretc.logs.signals.samples import Topic as Read
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.rendering import as_json
 from monitors.kernel import Outcome

@@ -23,7 +23,6 @@ What is open counts both ways: as failed for the lower bound, as answered for th
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil, log
 
@@ -32,6 +31,7 @@ from numpy.typing import NDArray
 
 from compiler.files.records import Record, Share
 from fretc.audit.measurements.trials import Trials
+from fretish.classes.frozen import dataclass
 from fretish.expressions import ComparisonOperator
 
 SUPPORTED, REFUTED, INCONCLUSIVE = "supported", "refuted", "inconclusive"

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +14,7 @@ from numpy.typing import NDArray
 from compiler.files.records import Count, Record, Seconds, Whole
 from fretc.logs.signals.enum_values import enum_value
 from fretc.logs.signals.samples import Recording, Samples, Values, scaled
+from fretish.classes.frozen import dataclass
 from monitors.kernel import Outcome
 
 SURROUNDINGS = 2 * 10**9

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 from math import dist
 
@@ -12,6 +12,7 @@ from fretc.audit.evidence.schema import Result, RobotPath
 from fretc.report.model import phrases
 from fretc.report.model.pictures import PlaceMark, RunMap
 from fretc.report.model.results import ResultRow
+from fretish.classes.frozen import dataclass
 
 MOST_MAPS = 8
 _NEAR = 0.02

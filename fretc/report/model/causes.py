@@ -9,7 +9,7 @@ tick, and for signals of unknown age.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from fractions import Fraction
 from functools import partial
 from math import inf, isfinite, isnan
@@ -28,6 +28,7 @@ from fretish import syntax as s
 from fretish.bindings.amounts import shared_unit
 from fretish.bindings.declarations import Aggregate, Declarations, Proposition, Signal
 from fretish.bindings.expressions import ticks_back
+from fretish.classes.frozen import dataclass
 from fretish.printer import expression
 from fretish.units import base_name, unit
 
