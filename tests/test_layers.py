@@ -67,7 +67,7 @@ DOORS = {
     "spot": {"compiler/logic/diagrams/buddy_engine.py", "compiler/logic/spot.py"},
     "buddy": {"compiler/logic/diagrams/buddy_engine.py", "compiler/logic/spot.py"},
     "oxidd": {"compiler/logic/diagrams/oxidd_engine.py"},
-    "jinja2": {"compiler/files/templating.py"},
+    "jinja2": {"compiler/files/template_engine.py", "compiler/files/templating.py"},
     "securesystemslib": {"fretc/attestation/keys.py"},
     "cryptography": {"fretc/attestation/keys.py"},
     "cyclonedx": {"fretc/attestation/sbom.py"},

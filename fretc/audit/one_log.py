@@ -13,7 +13,7 @@ from compiler.situations.situations import Situation
 from compiler.situations.thresholds import ThresholdPosition
 from fretc.audit.evidence.schema import Health, Situations
 from fretc.audit.evidence.writer import RunResult, health
-from fretc.audit.measurements.intervals import interval_words
+from fretc.audit.measurements.intervals import Moment, interval_words
 from fretc.audit.measurements.judgement import WITHOUT_VIOLATION, judge
 from fretc.audit.measurements.margins import Margin, margins, worst
 from fretc.audit.measurements.situations import Near, nowhere_known, situation_ticks
@@ -21,7 +21,7 @@ from fretc.audit.measurements.states import states
 from fretc.audit.measurements.tallies import tally
 from fretc.audit.measurements.trials import Count, Trials
 from fretc.audit.measurements.unknown_inputs import unknown_inputs
-from fretc.audit.measurements.violations import DemandText, Moment, violations
+from fretc.audit.measurements.violations import DemandText, violations
 from fretc.audit.phases.by_shift import Phases, phases
 from fretc.logs import log_diagnostics
 from fretc.logs.sample_fingerprint import fingerprint

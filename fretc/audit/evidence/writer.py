@@ -32,11 +32,12 @@ from fretc.audit.evidence.schema import (
     Verdict,
     Violation,
 )
+from fretc.audit.measurements.intervals import Moment
 from fretc.audit.measurements.margins import CROSSED, Margin
 from fretc.audit.measurements.tallies import PropositionTally
 from fretc.audit.measurements.trials import Trials
 from fretc.audit.measurements.unknown_inputs import UnknownInput
-from fretc.audit.measurements.violations import Moment, SampleWindow
+from fretc.audit.measurements.violations import SampleWindow
 from fretc.audit.measurements.violations import ViolationInterval as Broken
 from fretc.audit.phases.by_shift import PhaseInterval, Phases
 from fretc.logs.signals.enum_values import enum_value
