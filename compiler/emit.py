@@ -10,8 +10,6 @@ from collections.abc import Iterator, Mapping
 from importlib import import_module
 from typing import TYPE_CHECKING, cast
 
-from compiler.logic.printing import is_compound
-
 if TYPE_CHECKING:
     from compiler.formalization.formalized import FormalizedRequirement
     from compiler.targets.target import Target
@@ -58,6 +56,8 @@ TARGETS: Mapping[str, Target] = _Targets()
 
 def renamed_propositions(requirement: FormalizedRequirement) -> dict[str, dict[str, str]]:
     """For each kind of file: the names that are spelt differently there, with the spelling."""
+    from compiler.logic.printing import is_compound
+
     renamed_names: dict[str, dict[str, str]] = {}
     for kind, target in TARGETS.items():
         names = target.names(requirement).items()

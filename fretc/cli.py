@@ -6,7 +6,6 @@ A command imports its libraries when it runs. Exit status: 0 all satisfied or pr
 
 from __future__ import annotations
 
-import gc
 import os
 import signal
 import sys
@@ -158,18 +157,12 @@ def main() -> None:
         raise SystemExit(EXIT_USAGE) from None
 
 
-_GARBAGE = 200_000
-"""Number of new objects after which the garbage collector runs. Imports create no cycles, and with
-Python's default of 700 the collector takes a tenth of the start-up time."""
-
-
 def _prepare() -> None:
     """Make streams and signals safe: a closed pipe or SIGTERM spoils neither exit status nor files.
 
     Python imports nothing from the current folder.
     """
     isolate_imports()
-    gc.set_threshold(_GARBAGE)
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)
         if stream is None:

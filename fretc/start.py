@@ -1,12 +1,23 @@
-"""Entry point of the `fretc` command: handles Ctrl-C also during imports."""
+"""Entry point of the `fretc` command: Ctrl-C during imports, and how often garbage is collected."""
 
 from __future__ import annotations
 
+import gc
 import sys
+
+_GARBAGE = 200_000
+"""Number of new objects after which the garbage collector runs. Imports create no cycles, and with
+Python's default of 700 the collector takes a tenth of the start-up time."""
 
 
 def main() -> None:
-    """Run the command; the exit status is 130 if Ctrl-C stopped it during imports."""
+    """Run the command; the exit status is 130 if Ctrl-C stopped it during imports.
+
+    When it ends, Python searches all objects for cycles, which takes a fifth of the time of a short
+    command. It does not search frozen objects. Files are closed and temporary folders removed
+    without that search.
+    """
+    gc.set_threshold(_GARBAGE)
     try:
         from fretc.cli import main as run
 
@@ -14,3 +25,5 @@ def main() -> None:
     except KeyboardInterrupt:
         print("stopped", file=sys.stderr)
         raise SystemExit(130) from None
+    finally:
+        gc.freeze()

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any, Literal, assert_never
 
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.source import Span
 
 ComparisonOperator = Literal["<", "<=", ">", ">=", "=", "!="]

@@ -6,11 +6,12 @@ The tree keeps durations as written (`3 seconds`); `fretish.clock` converts them
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from enum import Enum, StrEnum, auto
 from fractions import Fraction
 from typing import Literal, assert_never
 
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.source import Span
 from fretish.expressions import ComparisonOperator, Expression
 

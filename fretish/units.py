@@ -10,11 +10,11 @@ from __future__ import annotations
 import math
 import re
 from collections import Counter
-from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations
 from operator import mul
 
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic, suggestion
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span

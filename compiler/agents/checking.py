@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from compiler.agents import gwendolen, psl
 from compiler.agents.gwendolen import Action, Agent, BeliefChange
@@ -35,6 +35,7 @@ from compiler.logic.claims import (
     vacuous,
 )
 from compiler.logic.kripke import Explored, Lasso, ModelTooLargeError, check
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source

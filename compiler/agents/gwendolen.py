@@ -9,7 +9,7 @@ Source: the grammar of MCAPL; Dennis, Gwendolen semantics: 2017, University of L
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from decimal import Decimal
 from functools import cache
 from typing import Literal, cast
@@ -23,6 +23,7 @@ from compiler.agents.gwendolen_errors import (
     beyond,
     unexpected,
 )
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source, Span

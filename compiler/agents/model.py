@@ -23,12 +23,13 @@ languages, ASE 19 (2012); MCAPL's reasoning cycle and its environment for verifi
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import StrEnum
 from itertools import chain, combinations, pairwise, permutations, product
 
 from compiler.agents.gwendolen import Action, Agent, BeliefChange, Deed
 from compiler.logic.kripke import Explored, explore
+from fretish.classes.frozen import dataclass
 
 SILENT = ("print", "remove_shared", "assert_shared")
 """Actions at which the environment draws nothing."""

@@ -11,10 +11,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from compiler.agents.psl_grammar import AjpfDivergenceError, JoinedText, formula
 from compiler.logic.formula import Formula
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source, Span

@@ -19,10 +19,11 @@ from __future__ import annotations
 import re
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from decimal import Decimal
 
 from compiler.logic import formula as f
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import DiagnosticError
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source, Span

@@ -10,7 +10,6 @@ in these values.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import assert_never
 
@@ -18,6 +17,7 @@ from compiler.explanation.windows import Column, Expectation, ObligationWindow, 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.reference import Template, template
 from fretish import syntax as s
+from fretish.classes.frozen import dataclass
 from fretish.meaning import span as in_ticks
 from fretish.printer import expression
 from fretish.syntax import Extent, ScopeKind

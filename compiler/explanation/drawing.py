@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from itertools import pairwise
 
 from compiler.explanation.diagram import Diagram, DiagramLane, LaneInterval, LaneKind, words
 from compiler.explanation.windows import Expectation
 from compiler.files.templating import render
+from fretish.classes.frozen import dataclass
 from fretish.clock import in_words
 from fretish.diagnostics.rendering import visible
 

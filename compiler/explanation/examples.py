@@ -8,7 +8,6 @@ never answered, broken late. Two traces are different where their runs are, repe
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 from compiler.explanation.shortest_words import AutomatonRun, Move, ShortestWords, Waypoint
 from compiler.explanation.windows import has_deadline, is_satisfied
@@ -31,6 +30,7 @@ from compiler.formalization.reference import (
     explore,
 )
 from compiler.logic.orders import Exclusion, only_possible
+from fretish.classes.frozen import dataclass
 
 MOST_STATES = 120_000
 """Automata with more states get no examples: the search would take seconds."""

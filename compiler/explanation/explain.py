@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import groupby
 from typing import Any
 
@@ -17,6 +16,7 @@ from compiler.formalization.letters import Valuation, letters_by_valuation
 from compiler.logic.definition import holds, holds_on_lasso
 from compiler.targets import ltl
 from fretish import syntax as s
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics import status_symbols as signs
 from fretish.diagnostics.rendering import visible
 from fretish.reading.recursion import with_recursion_limit

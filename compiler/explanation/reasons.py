@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import assert_never
 
 from compiler.explanation.windows import (
@@ -18,6 +17,7 @@ from compiler.explanation.windows import (
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.reference import Letter, Template, template
 from fretish import syntax as s
+from fretish.classes.frozen import dataclass
 from fretish.meaning import span as in_ticks
 from fretish.printer import expression
 from fretish.syntax import Extent

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby
 from typing import NamedTuple
@@ -20,6 +19,7 @@ from compiler.formalization.reference import (
     reversed_edges,
 )
 from fretish import syntax as s
+from fretish.classes.frozen import dataclass
 
 
 class Move(NamedTuple):

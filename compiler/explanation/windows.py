@@ -8,12 +8,12 @@ structured natural language requirements, IST 137 (2021), sections 3 and 4.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import assert_never
 
 from compiler.formalization.reference import Template
 from fretish import syntax as s
+from fretish.classes.frozen import dataclass
 from fretish.syntax import ConditionKind, Extent, Quantifier, ScopeKind
 
 Column = Sequence[bool]

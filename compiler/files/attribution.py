@@ -7,8 +7,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from typing import Any
+
+from fretish.classes.frozen import dataclass
 
 LONGEST = 500
 """Maximum number of characters of a field."""

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
 from math import isfinite
 from typing import NoReturn
+
+from fretish.classes.frozen import dataclass
 
 LEAST, GREATEST = -(2**63), 2**64 - 1
 """Range of integers: 64 bits, signed or unsigned, as times in logs are."""

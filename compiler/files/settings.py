@@ -9,12 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextvars import ContextVar
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from pathlib import Path
 from typing import Any
 
 from compiler.files.attribution import FIELDS, NOBODY, Attribution, InvalidField, attribution
 from compiler.files.text_files import read as read_text
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Span
 from fretish.reading.toml_text import Tables, unknown_key

@@ -1,29 +1,21 @@
-"""Rendering of templates, and quoting of untrusted text in them.
-
-The only module that imports jinja2.
-"""
+"""Rendering of templates, and quoting of untrusted text in them."""
 
 from __future__ import annotations
 
-import hashlib
 import json
 import re
-import sys
-from contextlib import suppress
 from functools import cache
-from importlib.util import cache_from_source
 from json.encoder import encode_basestring_ascii
 from pathlib import Path
-from pickle import UnpicklingError
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import jinja2
 import tomli_w
-from jinja2 import Environment, FileSystemLoader, StrictUndefined, select_autoescape
-from jinja2.bccache import Bucket, FileSystemBytecodeCache
-from markupsafe import Markup
 
 from fretish.diagnostics import status_symbols as signs
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+    from markupsafe import Markup
 
 
 def template_root() -> Path:
@@ -45,57 +37,22 @@ def render(name: str, **values: Any) -> str:
 
 @cache
 def _environment() -> Environment:
-    environment = Environment(
-        loader=FileSystemLoader(template_root()),
-        undefined=StrictUndefined,
-        autoescape=select_autoescape(enabled_extensions=("html.j2", "svg.j2"), default=False),
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-        bytecode_cache=_Compiled(),
-    )
-    environment.filters["python"] = python
-    environment.filters["comment"] = comment
-    environment.filters["c_comment"] = c_comment
-    environment.filters["c_remark"] = c_remark
-    environment.filters["js"] = script
-    environment.filters["json"] = to_json
-    environment.filters["data"] = data
-    environment.filters["toml"] = toml
-    environment.filters["key"] = key
-    environment.filters["hoa"] = quoted
-    environment.filters["dot"] = quoted
-    environment.globals["signs"] = signs
-    return environment
+    from compiler.files.template_engine import environment  # Many commands fill no template.
 
-
-class _Compiled(FileSystemBytecodeCache):
-    """Cache of compiled templates in Python's own cache folder, if that is writable.
-
-    Compiling the templates of the report takes 0.2 s. Anyone who can write there can also change
-    fretc's own code.
-    """
-
-    def __init__(self) -> None:
-        folder = Path(cache_from_source(str(template_root() / "templates.py"))).parent
-        super().__init__(str(folder), "%s.template")
-        self._maker = f"{jinja2.__version__} {Path(__file__).read_text(encoding='utf-8')}"
-
-    def get_source_checksum(self, source: str) -> str:
-        """A checksum of the template and of everything that compiles it, with Jinja's version."""
-        return hashlib.sha256(f"{self._maker}\n{source}".encode()).hexdigest()
-
-    def load_bytecode(self, bucket: Bucket) -> None:
-        """Load the compiled template if its file is intact."""
-        with suppress(OSError, EOFError, UnpicklingError):
-            super().load_bytecode(bucket)
-
-    def dump_bytecode(self, bucket: Bucket) -> None:
-        """Save the compiled template if the folder can be written."""
-        if not sys.dont_write_bytecode:
-            with suppress(OSError):
-                Path(self.directory).mkdir(parents=True, exist_ok=True)
-                super().dump_bytecode(bucket)
+    made = environment(template_root(), Path(__file__))
+    made.filters["python"] = python
+    made.filters["comment"] = comment
+    made.filters["c_comment"] = c_comment
+    made.filters["c_remark"] = c_remark
+    made.filters["js"] = script
+    made.filters["json"] = to_json
+    made.filters["data"] = data
+    made.filters["toml"] = toml
+    made.filters["key"] = key
+    made.filters["hoa"] = quoted
+    made.filters["dot"] = quoted
+    made.globals["signs"] = signs
+    return made
 
 
 def python(value: object) -> str:
@@ -152,6 +109,8 @@ def quoted(text: str) -> str:
 
 def data(value: object) -> Markup:
     """JSON for a data `<script>`, which no text in it can end."""
+    from markupsafe import Markup  # With Jinja.
+
     text = json.dumps(value, separators=(",", ":"))
     return Markup(text.replace("<", "\\u003c"))
 

@@ -10,10 +10,11 @@ import stat
 import time
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import BinaryIO, Literal
 
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic, suggestion
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source

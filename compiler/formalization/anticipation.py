@@ -13,7 +13,7 @@ trace is unconstrained in between. Source of the verdicts: Bauer, Leucker, Schal
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import assert_never
 
 from compiler.formalization.letters import MOST_ATOMS, all_letters, temporal_predicate
@@ -31,6 +31,7 @@ from compiler.formalization.reference import (
 from compiler.logic import formula as f
 from compiler.logic.implicants import Vector, cover
 from fretish import syntax as s
+from fretish.classes.frozen import dataclass
 from fretish.syntax import ConditionKind, ScopeKind
 
 SHORT = 6

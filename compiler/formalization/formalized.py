@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from itertools import chain
 
@@ -16,6 +16,7 @@ from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Variable
 from fretish.bindings.definitions import Definitions, expanded
 from fretish.checking import LOOK_BACK, conditions
+from fretish.classes.frozen import dataclass
 from fretish.clock import Clock
 from fretish.diagnostics.source import Source, Span
 from fretish.documents import RequirementEntry

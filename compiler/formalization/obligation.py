@@ -9,7 +9,6 @@ structured natural language requirements, IST 137 (2021), section 4.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from enum import Enum, Flag, auto
 from functools import partial
 from typing import Protocol, assert_never
@@ -18,6 +17,7 @@ from compiler.logic import formula as f
 from compiler.logic.printing import identifier, is_compound
 from fretish import expressions as e
 from fretish import syntax as s
+from fretish.classes.frozen import dataclass
 from fretish.printer import identifier as quoted
 
 

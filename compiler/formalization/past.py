@@ -10,7 +10,6 @@ section 5, rebuilt from the meaning.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import assert_never
 
 from compiler.formalization.obligation import TRAITS, Demand, Obligation, ObligationKind, Trait
@@ -36,6 +35,7 @@ from compiler.logic.formula import (
     since,
     weak_previous,
 )
+from fretish.classes.frozen import dataclass
 from fretish.syntax import ConditionKind, ScopeKind
 from monitors.kernel.verdicts import Signals
 

@@ -13,11 +13,11 @@ Leucker, Schallhart, Runtime verification for LTL and TLTL, TOSEM 20 (2011).
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from enum import IntEnum, auto
 from typing import Literal, NamedTuple, assert_never
 
 from fretish import syntax as s
+from fretish.classes.frozen import dataclass
 from fretish.syntax import ConditionKind, ScopeKind
 
 

@@ -8,7 +8,6 @@ examined.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import Annotated, Any, Final, Literal
 
@@ -22,6 +21,7 @@ from compiler.files.records import (
     about,
     json_schema,
 )
+from fretish.classes.frozen import dataclass
 from monitors.kernel.verdicts import Truth
 
 SCHEMA: Final = "fretc-verification-1"

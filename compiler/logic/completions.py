@@ -8,10 +8,10 @@ the set of their states.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import product
 
 from compiler.logic import formula as f
+from fretish.classes.frozen import dataclass
 from fretish.reading.recursion import with_recursion_limit
 from monitors.kernel.columns import Column
 

@@ -7,10 +7,10 @@ example traces; tests compare the fast evaluation with the first, and the second
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import assert_never
 
 from compiler.logic import formula as f
+from fretish.classes.frozen import dataclass
 
 Valuation = Mapping[str, bool]
 

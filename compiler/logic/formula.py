@@ -14,8 +14,9 @@ of the past, 1985; Koymans, Specifying real-time properties with metric temporal
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterator
-from dataclasses import dataclass
 from typing import assert_never
+
+from fretish.classes.frozen import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,12 +7,12 @@ edges, and never ends: a state without edges is repeated for ever.
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import Generic, TypeVar
 
 from compiler.logic import spot as automata
 from compiler.logic.formula import Formula, Last, ProbabilityBound, children
+from fretish.classes.frozen import dataclass
 
 S = TypeVar("S", bound=Hashable)
 

@@ -13,7 +13,7 @@ set of order constraints has a solution where no circle of them is strict.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from typing import TypeVar
 
@@ -31,6 +31,7 @@ from compiler.logic.ordering.relations import (
     relation_of,
 )
 from fretish import expressions as e
+from fretish.classes.frozen import dataclass
 from fretish.reading.recursion import with_recursion_limit
 
 Literal = tuple[str, bool]

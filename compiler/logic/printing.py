@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Container, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from types import MappingProxyType
 
 from compiler.logic import formula as f
 from compiler.logic.spelling.reserved_words import FRET as FRET_WORDS
 from compiler.logic.spelling.reserved_words import NOTATION
 from compiler.logic.spelling.reserved_words import SPOT as SPOT_WORDS
+from fretish.classes.frozen import dataclass
 from fretish.reading.recursion import with_recursion_limit
 
 _ATOMIC, _UNARY, _BINARY, _AND, _OR, _XOR, _IMPLIES, _IFF = range(8)

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from compiler.program.values import Value
+from fretish.classes.frozen import dataclass
 
 
 @dataclass(frozen=True, slots=True)

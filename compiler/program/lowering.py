@@ -7,7 +7,7 @@ negation meets a temporal operator, its dual is computed.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from compiler.formalization.past import MonitorSpec
 from compiler.logic import formula as f
@@ -45,6 +45,7 @@ from compiler.program.values import (
     not_,
     or_,
 )
+from fretish.classes.frozen import dataclass
 from fretish.reading.recursion import with_recursion_limit
 from monitors.kernel.verdicts import Signals
 

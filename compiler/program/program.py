@@ -8,11 +8,11 @@ as true possible values.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from compiler.program.columns import Column
 from compiler.program.instructions import Instruction
 from compiler.program.values import FALSE, Literal, Value
+from fretish.classes.frozen import dataclass
 from monitors.kernel.stepping import Marks
 from monitors.kernel.verdicts import Signals
 

@@ -9,7 +9,6 @@ the ticks since then. What outcomes remember is cells, too: what was broken, how
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 
 from compiler.program.clocks import clocks, lengthened
 from compiler.program.instructions import (
@@ -41,6 +40,7 @@ from compiler.program.values import (
     or_,
     parts,
 )
+from fretish.classes.frozen import dataclass
 
 
 @dataclass(frozen=True, slots=True)

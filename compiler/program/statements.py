@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any, ClassVar, Self, assert_never
 
 from compiler.program.instructions import Advance, Assign, Choose, SetCounter, Shift
 from compiler.program.rails import Cell, Deadline, Delay, Ring, Step, StoredProgram
 from compiler.program.values import Age, And, Constant, Literal, Not, Or, Value, Variable
+from fretish.classes.frozen import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,8 +7,9 @@ both what holds for certain and what may hold.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from enum import Enum
+
+from fretish.classes.frozen import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,10 +6,10 @@ A fix is safe if it cannot change what the author means (`Fix.is_safe`).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import partial
 
 from compiler.files.text_files import read
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.fixes import Fix, apply_fixes
 from fretish.diagnostics.source import Source, Span

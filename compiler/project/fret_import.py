@@ -12,7 +12,7 @@ import io
 import json
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import PurePosixPath
 from typing import Any
 
@@ -21,6 +21,7 @@ import tomli_w
 from compiler.files.artifact import Artifact
 from compiler.files.checked_json import parsed
 from compiler.project.fret_variables import OWN, glossary, text_of, variables_of
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic, Severity, did_you_mean
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from compiler.files.text_files import read
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import (
     Code,
     Diagnostic,

@@ -12,24 +12,25 @@ sphinx-needs, needs.json; OMG, Requirements Interchange Format (ReqIF) 1.2.
 from __future__ import annotations
 
 import lzma
-import zipfile
 import zlib
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
-from xml.etree import ElementTree
+from typing import TYPE_CHECKING, Any
 
 from compiler.files.checked_json import SchemaError, plain
 from compiler.files.settings import Settings
 from compiler.files.text_files import open_regular
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.extras import missing_extra
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source, Span
 from fretish.reading.limits import with_budget
 from fretish.reading.yaml_text import loaded
+
+if TYPE_CHECKING:
+    from zipfile import ZipFile
 
 
 @dataclass(frozen=True, slots=True)
@@ -271,6 +272,8 @@ _NAMES = ("ReqIF.ForeignID", "ReqIF.Name", "ReqIF.ChapterName", "ReqIF.Text", "U
 
 
 def _reqifz(path: Path, name: str) -> Iterator[Parent]:
+    import zipfile
+
     try:
         with open_regular(path) as file, zipfile.ZipFile(file) as archive:
             inside = sorted(n for n in archive.namelist() if n.lower().endswith(".reqif"))
@@ -286,7 +289,7 @@ def _reqifz(path: Path, name: str) -> Iterator[Parent]:
         yield from _reqif(text, name)
 
 
-def _inside(archive: zipfile.ZipFile, member: str) -> str:
+def _inside(archive: ZipFile, member: str) -> str:
     with archive.open(member) as file:
         return _decoded(file.read(_MOST + 1))
 
@@ -336,6 +339,8 @@ def _spec_object(spec: Any, names: Mapping[str, str], source: str) -> Parent:
 
 def _value(attribute: Any) -> str:
     """The value as text, without XHTML elements."""
+    from xml.etree import ElementTree
+
     value = attribute.value
     if isinstance(value, list):
         return ", ".join(map(str, value))

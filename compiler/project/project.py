@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 from compiler.files.attribution import NOBODY, Attribution
@@ -12,6 +12,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.project.acceptances import Acceptance, with_acceptance_reasons
 from compiler.project.hazards import Hazard
 from fretish.bindings.declarations import Declarations
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.documents import RequirementEntry
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 
 from compiler.formalization.binding_agreement import broken_tables
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.project.project import Project, Refused
 from fretish.bindings.declarations import Declarations
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.documents import RequirementEntry
 

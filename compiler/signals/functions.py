@@ -7,7 +7,6 @@ puts them into its template, and a `NumberSyntax` writes the expressions.
 from __future__ import annotations
 
 from collections.abc import Container, Mapping, Sequence
-from dataclasses import dataclass
 
 from compiler.files.build_id import __version__
 from compiler.formalization.formalized import FormalizedRequirement
@@ -15,6 +14,7 @@ from compiler.logic.identifiers import legal_names
 from compiler.signals.policies import InstantFunctions, PropositionFunctions, SamplePolicy, instant
 from compiler.signals.printing import NumberSyntax, Printer
 from fretish.bindings.declarations import Aggregate, Reading, Reduce
+from fretish.classes.frozen import dataclass
 
 
 @dataclass(frozen=True, slots=True)

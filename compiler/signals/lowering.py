@@ -8,13 +8,14 @@ same for whole columns.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from fractions import Fraction
 from typing import Literal
 
 from compiler.signals import numbers as n
 from fretish import expressions as e
 from fretish.bindings.constants import called, computed, quantity, whole_exponent
+from fretish.classes.frozen import dataclass
 from fretish.units import ONE, Unit
 
 

@@ -8,9 +8,10 @@ number computed from it. `monitors.kernel.readings` has a function for each of t
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal
+
+from fretish.classes.frozen import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,7 +21,6 @@ are given as one number (`is_given`).
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.signals import numbers as n
@@ -29,6 +28,7 @@ from compiler.signals.lowering import Lowering
 from fretish import expressions as e
 from fretish.bindings.declarations import Aggregate, Proposition, Reduce, Signal
 from fretish.bindings.expressions import ticks_back
+from fretish.classes.frozen import dataclass
 
 
 @dataclass(frozen=True, slots=True)

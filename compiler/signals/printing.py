@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
 from math import ceil, floor, nan
 from typing import NamedTuple, assert_never
 
 from compiler.signals import numbers as n
+from fretish.classes.frozen import dataclass
 from monitors.kernel.readings import DOUBLES_END, Single, exact
 
 _HALVES_END = 2**52

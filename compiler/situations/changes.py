@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import islice
 
 from compiler.situations.thresholds import literal_number
 from fretish import expressions as e
+from fretish.classes.frozen import dataclass
 from fretish.printer import expression
 
 MOST_PARTS = 100

@@ -12,7 +12,6 @@ criterion, DOT/FAA/AR-01/18, 2001.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import partial
 
 from compiler.formalization.formalized import FormalizedRequirement
@@ -23,6 +22,7 @@ from compiler.situations.changes import is_large
 from compiler.situations.tick_predicates import TickPredicates
 from fretish import expressions as e
 from fretish import syntax as s
+from fretish.classes.frozen import dataclass
 
 
 @dataclass(frozen=True, slots=True)

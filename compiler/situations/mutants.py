@@ -10,13 +10,14 @@ Black, Okun, Yesha, Mutation operators for specifications, ASE 2000.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from compiler.formalization.formalize import formalize
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.situations.changes import changes, opposite
 from fretish import expressions as e
 from fretish import syntax as s
+from fretish.classes.frozen import dataclass
 from fretish.clock import in_unit
 from fretish.diagnostics.source import Source
 from fretish.printer import canonical, condition, expression, scope, timing

@@ -8,7 +8,7 @@ decide that.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import assert_never
 
 from compiler.formalization.formalized import FormalizedRequirement
@@ -21,6 +21,7 @@ from compiler.situations.tick_predicates import TickPredicates, tick_predicates
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.checking import LOOK_AHEAD, calls, conditions
+from fretish.classes.frozen import dataclass
 from fretish.clock import duration_text
 from fretish.printer import expression
 from fretish.reading.recursion import with_recursion_limit

@@ -7,10 +7,10 @@ A step is one unit of the last digit of a threshold as written: 0.1 m for `1.2 m
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from decimal import Decimal
 
 from fretish import expressions as e
+from fretish.classes.frozen import dataclass
 
 _MOST_DIGITS = 25
 """Maximum number of digits; `Decimal` computes with more."""

@@ -16,7 +16,6 @@ this module.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import assert_never
 
@@ -32,6 +31,7 @@ from compiler.formalization.obligation import (
 from compiler.formalization.past import ScopeFormulas, scope_formulas
 from compiler.formalization.predicates import Past
 from compiler.logic import formula as f
+from fretish.classes.frozen import dataclass
 from fretish.syntax import ConditionKind, ScopeKind
 
 

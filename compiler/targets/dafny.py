@@ -24,7 +24,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
@@ -40,6 +39,7 @@ from compiler.targets.target import Target, file_of_each, not_expressible, stem
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.bindings.declarations import Declarations
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.recursion import with_recursion_limit
 from fretish.syntax import ConditionKind, ScopeKind

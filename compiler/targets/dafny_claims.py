@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import Uninterpreted, boolean
@@ -14,6 +13,7 @@ from compiler.targets.interceptor_options import options as core
 from compiler.targets.interceptor_options import repetition, ticks
 from fretish import syntax as s
 from fretish.bindings.declarations import Declarations, InterceptorForm, Requests
+from fretish.classes.frozen import dataclass
 from fretish.printer import timing as printed
 
 CHANNELS = (

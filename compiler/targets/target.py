@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import Protocol
 
@@ -13,6 +12,7 @@ from compiler.files.attribution import NOBODY, Attribution
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import formula as f
 from fretish.bindings.declarations import Declarations
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.documents import RequirementEntry

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from itertools import groupby
 
 from compiler.formalization.formalized import FormalizedRequirement
@@ -21,6 +20,7 @@ from compiler.formalization.reference import (
     explore,
     template,
 )
+from fretish.classes.frozen import dataclass
 
 _MOST_STATES = 2_000
 

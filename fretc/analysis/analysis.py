@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import TypeVar
 
@@ -39,6 +38,7 @@ from fretc.analysis.repairs import repairs
 from fretc.analysis.verdicts import Completeness, component, conflicts, strategy, verdict
 from fretish.bindings.declarations import Role
 from fretish.checking import NUMBERS_BACK, calls, conditions
+from fretish.classes.frozen import dataclass
 from fretish.printer import sentence as printed
 from fretish.reading.recursion import with_recursion_limit
 

@@ -6,7 +6,6 @@ The file is not trusted: a verdict that does not follow from its findings is F50
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Final, Literal
 
@@ -19,6 +18,7 @@ from fretc.analysis.arena.roles import role
 from fretc.analysis.findings import Analysis, RealizabilityVerdict
 from fretc.analysis.reasons import listed
 from fretish.bindings import canonical
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source

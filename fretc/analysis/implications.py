@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import combinations
 from operator import attrgetter
 
@@ -16,6 +15,7 @@ from fretc.analysis.findings import Inconsistency, OpenQuestion, Redundancy, Vac
 from fretc.analysis.games.cores import minimal
 from fretc.analysis.realizability_problem import RealizabilityProblem
 from fretc.analysis.reasons import listed
+from fretish.classes.frozen import dataclass
 
 MOST_TRIPLES = 500
 """Maximum number of triples of linked requirements that are examined."""

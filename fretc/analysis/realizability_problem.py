@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from itertools import chain, repeat
 
 from compiler.formalization.formalized import FormalizedRequirement
@@ -25,6 +25,7 @@ from fretc.analysis.games.game_traces import Run
 from fretc.analysis.games.replay import remembering
 from fretc.analysis.games.runs import SatisfyingRuns
 from fretish.bindings.declarations import Role
+from fretish.classes.frozen import dataclass
 
 _FEW = 5
 """Number of requirements and assumptions up to which they are examined by themselves."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from itertools import combinations, islice, permutations
 from typing import assert_never, cast
 
@@ -24,6 +24,7 @@ from fretc.analysis.findings import Conflict, OpenQuestion, Repair
 from fretc.analysis.realizability_problem import RealizabilityProblem, stage
 from fretish import expressions as e
 from fretish.bindings.declarations import Role
+from fretish.classes.frozen import dataclass
 from fretish.clock import in_unit
 from fretish.diagnostics.source import Source
 from fretish.documents import RequirementEntry

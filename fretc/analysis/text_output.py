@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import groupby
 
 from fretc.analysis.findings import (
@@ -16,6 +15,7 @@ from fretc.analysis.findings import (
 )
 from fretc.analysis.reasons import listed
 from fretish.bindings.declarations import Role
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics import status_symbols as signs
 from fretish.diagnostics.status_symbols import StatusSymbol
 

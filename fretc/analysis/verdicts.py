@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 from compiler.files.records import replace as altered
 from compiler.formalization.formalized import FormalizedRequirement
@@ -22,6 +22,7 @@ from fretc.analysis.games.switches import switched
 from fretc.analysis.realizability_problem import RealizabilityProblem, stage
 from fretc.analysis.reasons import because, listed
 from fretish.bindings.declarations import Role
+from fretish.classes.frozen import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
 
 from compiler.project.project import Project
 from fretc.api.refusal import Refusal, accepted, bounded
@@ -16,6 +15,7 @@ from fretc.audit.many_logs import local_executor
 from fretc.audit.outputs.totals import VerdictWords
 from fretc.audit.plan import Plan, planned
 from fretc.logs.signals.integrity import Integrity
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 from compiler.project.paths import sibling_path
 from compiler.project.project import Project
@@ -14,6 +13,7 @@ from fretc.attestation.signatures import SIGNERS
 from fretc.report.make import ReportBuild, make
 from fretc.verification.ajpf_results import default_paths as ajpf_results
 from fretc.verification.reader import default_path as verification_file
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 

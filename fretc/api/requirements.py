@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
 
 from compiler.files.text_files import read
 from compiler.formalization.formalize import formalize as formalized
@@ -14,6 +13,7 @@ from compiler.project.project import Project
 from fretc.api.refusal import Refusal, accepted, bounded
 from fretish.bindings.declarations import Declarations
 from fretish.bindings.tables.reader import read_bindings
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic, has_errors
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source

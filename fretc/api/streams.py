@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from operator import index
 
 from compiler.project.project import Project
@@ -14,6 +13,7 @@ from fretc.logs.stream import ClockTick as Row
 from fretc.logs.stream import SampleStream as Truths
 from fretc.watch.requirement_monitors import RequirementMonitors
 from fretish.bindings.declarations import Signal
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic, did_you_mean
 from fretish.diagnostics.messages import diagnostic
 from monitors.kernel.stepping import Standing

@@ -13,7 +13,7 @@ import binascii
 import hashlib
 import json
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from cryptography.exceptions import UnsupportedAlgorithm
 from cryptography.hazmat.primitives.asymmetric.ec import EllipticCurvePublicKey
@@ -33,6 +33,7 @@ from securesystemslib.exceptions import UnverifiedSignatureError
 from securesystemslib.signer import CryptoSigner, SSlibKey
 
 from compiler.files.checked_json import JsonValue, plain
+from fretish.classes.frozen import dataclass
 
 PAYLOAD_TYPE = "application/vnd.in-toto+json"
 """DSSE's `payloadType` of an in-toto statement; no other payload is signed or read."""

@@ -9,7 +9,6 @@ Source: in-toto Attestation Framework, Bundle, https://github.com/in-toto/attest
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,6 +18,7 @@ from compiler.files.text_files import read as read_text
 from fretc.attestation import statement as attestation
 from fretc.attestation.statement import SignedItem, Statement
 from fretc.attestation.statement import read as read_statement
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.extras import unless_installed
 from fretish.diagnostics.messages import diagnostic

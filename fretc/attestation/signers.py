@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from fnmatch import fnmatchcase
 
 from compiler.files.text_files import read as read_text
 from compiler.files.text_files import sha256
 from fretc.attestation.keys import KEY_TYPES, PublicKey, UnusableKeyError, public_key
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source, Span

@@ -12,7 +12,7 @@ from __future__ import annotations
 import json
 import platform
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +27,7 @@ from fretc.audit.evidence.result_summaries import EvidenceSource, ResultSummary
 from fretc.traceability.lock import Review
 from fretc.traceability.waivers import Waiver
 from fretc.verification.reader import Proofs
+from fretish.classes.frozen import dataclass
 
 TYPE = "https://in-toto.io/Statement/v1"
 EVIDENCE, LOG, PROOFS, ANALYSIS, REVIEW, WAIVER, REPORT = (

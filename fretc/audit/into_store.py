@@ -9,7 +9,6 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Collection, Sequence
 from contextlib import closing, suppress
-from dataclasses import dataclass
 from pathlib import Path
 from sqlite3 import Error as SqliteError
 
@@ -54,6 +53,7 @@ from fretc.audit.store.register import (
     marks,
 )
 from fretc.audit.store.writer import StoreFile, complete, not_written, publish, remove
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
 from fretish.system.files import FolderLock

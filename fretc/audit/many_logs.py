@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import partial
 from types import MappingProxyType
 
@@ -56,6 +56,7 @@ from fretc.logs.labels import NO_METADATA, labels, with_overrides
 from fretc.logs.reader import read
 from fretc.logs.signals.samples import Recording
 from fretc.logs.storage.log_names import STDIN, name_of
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.caching import cache_by_identity
 from monitors import kernel

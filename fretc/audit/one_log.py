@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cache
 from statistics import median
 
@@ -13,7 +13,7 @@ from compiler.situations.situations import Situation
 from compiler.situations.thresholds import ThresholdPosition
 from fretc.audit.evidence.schema import Health, Situations
 from fretc.audit.evidence.writer import RunResult, health
-from fretc.audit.measurements.intervals import interval_words
+from fretc.audit.measurements.intervals import Moment, interval_words
 from fretc.audit.measurements.judgement import WITHOUT_VIOLATION, judge
 from fretc.audit.measurements.margins import Margin, margins, worst
 from fretc.audit.measurements.situations import Near, nowhere_known, situation_ticks
@@ -21,7 +21,7 @@ from fretc.audit.measurements.states import states
 from fretc.audit.measurements.tallies import tally
 from fretc.audit.measurements.trials import Count, Trials
 from fretc.audit.measurements.unknown_inputs import unknown_inputs
-from fretc.audit.measurements.violations import DemandText, Moment, violations
+from fretc.audit.measurements.violations import DemandText, violations
 from fretc.audit.phases.by_shift import Phases, phases
 from fretc.logs import log_diagnostics
 from fretc.logs.sample_fingerprint import fingerprint
@@ -35,6 +35,7 @@ from fretish import expressions as e
 from fretish.bindings.amounts import duration, scaled, seconds, shared_unit
 from fretish.bindings.amounts import margin as margin_text
 from fretish.bindings.declarations import Declarations, Proposition, Signal
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.printer import expression
 from fretish.reading.caching import cache_by_identity

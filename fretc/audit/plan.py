@@ -6,7 +6,7 @@ import hashlib
 import json
 import pickle
 from collections.abc import Mapping, Sequence
-from dataclasses import astuple, dataclass, field
+from dataclasses import astuple, field
 from functools import lru_cache, partial
 
 from compiler.files.build_id import build_id
@@ -27,6 +27,7 @@ from fretc.audit.one_log import MonitoredRequirement
 from fretc.audit.refusals import RefusedRequirement, refusals
 from fretc.logs.signals.integrity import Integrity
 from fretish.bindings.declarations import Declarations
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.documents import RequirementEntry

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 from compiler.formalization.binding_agreement import unbound_propositions
 from compiler.formalization.formalized import FormalizedRequirement
@@ -10,6 +10,7 @@ from compiler.project.project import Project
 from compiler.targets.python import monitor as monitors
 from fretc.audit.evidence.basis import Basis
 from fretish.bindings.declarations import Declarations
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic, has_errors
 from fretish.diagnostics.messages import diagnostic
 from fretish.documents import RequirementEntry

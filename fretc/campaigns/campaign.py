@@ -5,7 +5,6 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
@@ -16,6 +15,7 @@ from fretc.audit.measurements.binomial import highest, lowest
 from fretc.audit.plan import monitored_requirements
 from fretc.audit.pool import WorkerDied, map_processes
 from fretc.campaigns.experiment import interceptor, plan, safety_function
+from fretish.classes.frozen import dataclass
 from monitors import kernel
 from monitors.interceptor import Options
 from simulation.mission import Mission, record

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
@@ -16,6 +15,7 @@ from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.result_summaries import EvidenceSource
 from fretc.audit.evidence.schema import SCHEMA, Result
 from fretc.terminal.output import EVIDENCE, STORE, fail, not_written, print_status
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 

@@ -6,7 +6,7 @@ import os
 import time
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -49,6 +49,7 @@ from fretc.terminal.output import (
     write_outputs,
 )
 from fretc.terminal.screen import screen
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic, has_errors
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible

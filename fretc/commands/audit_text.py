@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from shlex import quote
 from typing import Any
 
@@ -33,6 +32,7 @@ from fretc.coverage.text_output import in_counts
 from fretc.terminal.output import EVIDENCE, REQUIREMENTS_FOLDER, STORE
 from fretc.terminal.screen import Screen, padded, titled, width
 from fretish.bindings.amounts import count_of, duration, exact, instant, seconds, value
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.rendering import visible
 from fretish.documents import named
 

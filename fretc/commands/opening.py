@@ -6,7 +6,6 @@ whatever else it prints or writes.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from fretc.terminal.options import places
@@ -19,6 +18,7 @@ from fretc.terminal.output import (
     print_project_diagnostics,
     print_status,
 )
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic, did_you_mean, has_errors
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible

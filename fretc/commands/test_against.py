@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Iterable
-from dataclasses import dataclass
 from pathlib import Path
 
 import click
@@ -34,6 +33,7 @@ from fretc.testing.conformance.conformance_run import ConformanceRun
 from fretc.testing.conformance.findings import Conformance
 from fretc.testing.conformance.program import ProgramError, ProgramRun
 from fretc.testing.conformance.text_output import lines
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 

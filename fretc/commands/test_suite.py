@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import click
@@ -37,6 +36,7 @@ from fretc.testing.requirement_model import demands
 from fretc.testing.suite import Suite
 from fretc.testing.text_output import lines, lines_of_file, shown
 from fretish.bindings.declarations import Role
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from textwrap import wrap
 
 from fretc.audit.evidence.verdicts import VERDICTS, severity
@@ -14,6 +13,7 @@ from fretc.terminal.screen import Screen, fitted, padded
 from fretc.trends.changes import RoundOutcome, VerdictChange
 from fretc.trends.comparisons import ComparisonFinding
 from fretc.trends.trends import Group, Item, Trends, arrived, gone, not_selected
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics import status_symbols as signs
 from fretish.diagnostics.rendering import visible
 from fretish.diagnostics.status_symbols import StatusSymbol

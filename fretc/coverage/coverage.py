@@ -8,14 +8,17 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from enum import StrEnum
+from typing import TYPE_CHECKING
 
 from compiler.files.records import UnsetType
 from fretc.audit.evidence.result_summaries import EvidenceSource
 from fretc.audit.evidence.schema import Moment, RequirementRecord, Situations
 from fretc.audit.evidence.schema import SituationRecord as Named
-from fretc.coverage.least_runs import LeastRuns, least_runs
+from fretish.classes.frozen import dataclass
+
+if TYPE_CHECKING:
+    from fretc.coverage.least_runs import LeastRuns
 
 
 class CoverageStatus(StrEnum):
@@ -81,6 +84,8 @@ def coverage(source: EvidenceSource) -> Coverage:
     Raises:
         StoreError: the store is damaged.
     """
+    from fretc.coverage.least_runs import least_runs
+
     names, found = of_all_runs(source)
     aims = [
         frozenset(situation.seen) for item in found for situation in item.of(CoverageStatus.SEEN)

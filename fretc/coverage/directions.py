@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from enum import StrEnum
 
 from fretc.coverage.coverage import Coverage, CoverageStatus
 from fretc.testing.suite import GoalResult, GoalStatus, Polarity, Repeat, Suite, Test
 from fretish.bindings.amounts import seconds
+from fretish.classes.frozen import dataclass
 from fretish.units import nanoseconds
 
 

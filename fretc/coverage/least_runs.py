@@ -8,10 +8,11 @@ for the set-covering problem, Mathematics of Operations Research 4 (1979).
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+
+from fretish.classes.frozen import dataclass
 
 _NODES = 20_000
 """Maximum nodes of the search tree; not a time, so that the result is reproducible."""

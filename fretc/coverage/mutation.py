@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 
 from compiler.formalization.formalized import FormalizedRequirement, without_probability
@@ -26,6 +26,7 @@ from fretc.logs.signals.traces import Trace, trace
 from fretc.logs.storage.log_names import STDIN, name_of
 from fretc.testing.suite import MutantStatus, Suite
 from fretish.bindings.declarations import Declarations
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from monitors import kernel
 from monitors.kernel import Column, Monitor, Outcome

@@ -8,7 +8,7 @@ the decoder disagrees, it reads the whole stream.
 from __future__ import annotations
 
 from collections.abc import Container, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any
 
 import numpy as np
@@ -27,6 +27,7 @@ from fretc.logs.signals.samples import EXACT, Numbers, Times, Values, widest
 from fretc.logs.signals.signals import RANGE_MIN, FieldError, is_chosen, sample
 from fretc.logs.signals.signals import nearest as nearest_of_one
 from fretish.bindings.declarations import Reduce, Signal
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 
 _CHECKED = 8

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import partial, reduce
 from operator import add
 
@@ -36,6 +36,7 @@ from fretc.logs.topics import clocks, never_stated, topic
 from fretc.logs.vocabulary import MessageTexts, Words
 from fretc.logs.watch_records import watched
 from fretish.bindings.declarations import Declarations, Signal
+from fretish.classes.frozen import dataclass
 from fretish.clock import Clock
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.messages import diagnostic

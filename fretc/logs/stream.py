@@ -11,7 +11,7 @@ from __future__ import annotations
 from bisect import bisect_left, bisect_right
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from math import isnan
 from typing import Any
 
@@ -28,6 +28,7 @@ from fretc.logs.signals.traces import proposition_states
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Signal
 from fretish.bindings.expressions import ticks_back
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from monitors.kernel.verdicts import Truth

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,7 @@ from fretc.logs.signals.enum_values import UnmappedSamples
 from fretc.logs.signals.samples import Gap, Late, NumberList, Times, Values
 from fretc.logs.signals.topic_clocks import JUMP, forward_fill, late, unset
 from fretish.bindings.declarations import Declarations, Signal, short_type
+from fretish.classes.frozen import dataclass
 from fretish.clock import TimeSource
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Span

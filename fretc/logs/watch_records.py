@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -20,6 +19,7 @@ from fretc.logs.mcap.damage import LATEST
 from fretc.logs.signals.samples import Gap
 from fretc.logs.topic_columns import Columns
 from fretish.bindings.amounts import seconds
+from fretish.classes.frozen import dataclass
 from fretish.clock import Clock, TimeSource, in_words
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic

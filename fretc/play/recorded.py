@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import groupby
 from types import MappingProxyType
 
@@ -21,6 +20,7 @@ from fretc.logs.reader import read
 from fretc.logs.signals.traces import WholeTicks, trace
 from fretc.logs.storage.log_names import path_of
 from fretc.play.starts import MOST, RecordedPlace, Start, Ticks
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from monitors.kernel import Column, Monitor, evaluate
 from monitors.kernel.stepping import literals_of

@@ -6,12 +6,12 @@ Traces have values of variables and propositions; a missing value is unknown.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 from compiler.explanation.explain import explanation
 from compiler.formalization.formalized import FormalizedRequirement
 from fretc.analysis.evidence import AnalysisDocument
 from fretc.testing.suite import Suite
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.printer import sentence as printed

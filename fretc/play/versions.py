@@ -7,7 +7,7 @@ meaning in the bindings, so that both versions have the same runs.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from compiler.formalization.formalized import FormalizedRequirement
@@ -18,6 +18,7 @@ from fretc.play.starts import MOST, Start
 from fretc.testing.runs import Absence, difference
 from fretish.bindings.canonical import bound, clock
 from fretish.bindings.declarations import Declarations
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.recursion import with_recursion_limit
 

@@ -6,7 +6,6 @@ This module reads the files; `fretc.report.assembly` builds the report.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 from compiler.files.dates import today
 from compiler.formalization.formalized import FormalizedRequirement
@@ -26,6 +25,7 @@ from fretc.traceability.waivers import Waiver
 from fretc.traceability.waivers import read as read_waivers
 from fretc.verification.ajpf_results import ajpf_proofs, merged
 from fretc.verification.reader import read as read_proofs
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 
 

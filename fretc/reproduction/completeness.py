@@ -7,13 +7,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cache, partial
 
 from fretc.audit.evidence.schema import EvidenceDocument, Result, Selection
 from fretc.reproduction.outcome import FILE, Recheck, differs, unknown
 from fretc.traceability.chain import LOG
 from fretc.traceability.lock import Lock, Review
+from fretish.classes.frozen import dataclass
 from fretish.reading.natural_order import natural
 
 Prints = Callable[[str], Collection[str]]

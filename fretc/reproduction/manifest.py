@@ -8,7 +8,6 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
 from compiler.files.text_files import file_sha256
 from compiler.files.text_files import read as read_text
@@ -17,6 +16,7 @@ from fretc.logs.storage.folders import METADATA, Folder, folder, is_folder
 from fretc.logs.storage.log_names import is_url, name_of
 from fretc.logs.storage.splits import split
 from fretc.reproduction.outcome import Recheck, differs, unknown
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 from fretish.diagnostics.source import Source
 

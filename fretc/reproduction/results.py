@@ -10,7 +10,6 @@ from __future__ import annotations
 import json
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from dataclasses import replace as changed
 from functools import lru_cache, partial
 from pathlib import Path
@@ -34,6 +33,7 @@ from fretc.logs.storage.log_names import name_of, path_of
 from fretc.reproduction.completeness import ComparisonScope, incomplete
 from fretc.reproduction.manifest import Manifest, matches
 from fretc.reproduction.outcome import ALL_RUNS, FILE, ItemOutcome, Recheck, differs, unknown
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source
 from fretish.parser import parse

@@ -9,8 +9,8 @@ import codecs
 import os
 import sys
 from collections.abc import Iterable
-from dataclasses import dataclass
 
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.rendering import visible
 from fretish.diagnostics.status_symbols import STATUS_SYMBOLS
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.situations.mutants import Mutant, mutants
@@ -26,6 +25,7 @@ from fretc.testing.suite import (
     unused,
 )
 from fretc.testing.words import Expected, expected, undecided
+from fretish.classes.frozen import dataclass
 from fretish.printer import sentence as printed
 from fretish.reading.recursion import with_recursion_limit
 from monitors.kernel.verdicts import Verdict

@@ -7,7 +7,7 @@ at every tick, and can be satisfied for ever afterwards; the requirement under t
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 from typing import assert_never
 
@@ -29,6 +29,7 @@ from fretc.analysis.realizability_problem import alphabet_of
 from fretc.testing.search import Endings, Letter, RunSearch
 from fretc.testing.suite import Polarity
 from fretish.bindings.declarations import Role
+from fretish.classes.frozen import dataclass
 
 Ids = tuple[str, ...]
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import TypeVar
 
@@ -23,6 +22,7 @@ from fretc.testing.search import Letter
 from fretc.testing.suite import Polarity
 from fretc.testing.words import Naming, RunColumns, blotted, is_killed, judged, word
 from fretish import expressions as e
+from fretish.classes.frozen import dataclass
 
 T = TypeVar("T")
 F = TypeVar("F")

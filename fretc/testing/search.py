@@ -10,12 +10,13 @@ Burch et al., Symbolic model checking, LICS 1990.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from compiler.logic.diagrams import decision_diagrams as bdd
 from compiler.logic.diagrams.decision_diagrams import Function
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.transition import State, Transition
+from fretish.classes.frozen import dataclass
 
 Letter = Mapping[int, bool]
 """A value of each variable of the alphabet."""

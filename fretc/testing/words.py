@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import partial
 from itertools import groupby
 from typing import TypeVar
@@ -22,6 +22,7 @@ from fretc.analysis.arena.alphabet import Alphabet, Tick, Value
 from fretc.testing.search import Letter
 from fretc.testing.suite import Repeat
 from fretish import syntax as s
+from fretish.classes.frozen import dataclass
 from monitors.kernel import Column, Monitor
 from monitors.kernel.columns import truths
 from monitors.kernel.verdicts import PENDING, Truth, Verdict

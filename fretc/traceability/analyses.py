@@ -7,7 +7,6 @@ and the assumptions. A change of another requirement does not affect it.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import chain
 
 from compiler.formalization.formalized import FormalizedRequirement
@@ -17,6 +16,7 @@ from fretc.analysis.assumptions import assumptions
 from fretc.analysis.components import by_outputs
 from fretc.analysis.evidence import AnalyzedRequirement, AnalyzedSet, members
 from fretc.analysis.findings import Analysis, RealizabilityVerdict
+from fretish.classes.frozen import dataclass
 
 
 @dataclass(frozen=True, slots=True)

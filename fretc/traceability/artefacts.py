@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import PurePath
 
 from compiler.emit import TARGETS
@@ -14,6 +13,7 @@ from compiler.targets.interceptor_options import ASSUMED, assumptions_digest
 from compiler.targets.python import interceptor, monitor
 from compiler.targets.target import Target, TargetOptions
 from fretish.bindings.declarations import Declarations
+from fretish.classes.frozen import dataclass
 from fretish.documents import RequirementEntry
 
 

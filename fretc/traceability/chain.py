@@ -10,7 +10,7 @@ that can be followed both ways; Doorstop and StrictDoc call a link suspect whose
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, field
 from typing import Any, NamedTuple
 
 from compiler.files.build_id import __version__
@@ -31,6 +31,7 @@ from fretc.traceability.artefacts import Product, monitors, shared_products
 from fretc.traceability.artefacts import products as products_of
 from fretc.traceability.texts import ReviewedTexts
 from fretish.bindings.canonical import described, digest
+from fretish.classes.frozen import dataclass
 from fretish.documents import RequirementEntry
 
 HAZARD, PARENT, STATUS, PLAN = "hazard", "parent", "status", "plan"

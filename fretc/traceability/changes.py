@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from compiler.files.records import replace
@@ -35,6 +34,7 @@ from fretc.traceability.chain import (
 from fretc.traceability.meanings import Key, ReviewText, leaves
 from fretc.traceability.texts import BindingsTexts, ReviewedTexts
 from fretc.traceability.word_diff import Segment
+from fretish.classes.frozen import dataclass
 
 
 @dataclass(frozen=True, slots=True)

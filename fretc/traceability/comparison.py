@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from compiler.project.project import Project
@@ -13,6 +12,7 @@ from fretc.audit.evidence.verdicts import VERDICTS, severity
 from fretc.traceability.chain import ANALYSIS, VERDICT, Suspect
 from fretc.traceability.changes import ReviewChange
 from fretc.traceability.lock import Lock, Review, ReviewedRequirement
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code
 from monitors import kernel
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import tomli_w
@@ -37,6 +36,7 @@ from fretc.traceability.meanings import agree
 from fretc.traceability.texts import ReviewedTexts, as_table
 from fretc.traceability.texts import read as read_texts
 from fretish.bindings.canonical import digest
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source

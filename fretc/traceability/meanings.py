@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from itertools import chain
 from typing import Any
 
@@ -45,6 +44,7 @@ from fretc.traceability.texts import (
 from fretish.bindings import canonical
 from fretish.bindings.declarations import Declarations
 from fretish.bindings.tables.reader import read_bindings
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.source import Source
 from fretish.documents import RequirementEntry
 from fretish.printer import expression

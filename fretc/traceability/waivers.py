@@ -6,7 +6,7 @@ The report shows the verdict that a waiver covers. A waiver expires by itself.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from datetime import date
 from typing import Any
 
@@ -14,6 +14,7 @@ from compiler.files.dates import is_date
 from compiler.files.text_files import read as read_text
 from fretc.audit.measurements.confidence_intervals import REFUTED
 from fretish.bindings.canonical import digest
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code, Diagnostic, did_you_mean
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span

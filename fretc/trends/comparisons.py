@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import StrEnum
 from statistics import median
 
@@ -17,6 +17,7 @@ from fretc.audit.evidence.schema import ThresholdRecord
 from fretc.report.model.phrases import some, value
 from fretc.trends.histories import ComparableRuns, Histories, HistoryRun, RunOutcome
 from fretc.trends.rank_test import RankTest, decidable, fewer, holm, larger
+from fretish.classes.frozen import dataclass
 
 LEVEL = 0.05
 """The probability of even one false regression among all that are reported."""

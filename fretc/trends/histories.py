@@ -12,13 +12,14 @@ import re
 from array import array
 from collections import Counter, defaultdict
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from datetime import UTC, datetime
 from pathlib import PurePosixPath
 
 from fretc.audit.evidence.basis import BINDINGS, CLOCK, PARAMS, SENTENCE, TOPICS
 from fretc.audit.evidence.result_summaries import EvidenceSource, ResultSummary, RunFacts
 from fretc.audit.evidence.schema import Selection
+from fretish.classes.frozen import dataclass
 from fretish.reading.natural_order import natural
 
 EVIDENCE, DAY = "evidence", "day"

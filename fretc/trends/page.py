@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from typing import Any
 
 from compiler.files.build_id import __version__
@@ -16,6 +16,7 @@ from fretc.trends.changes import RED, VerdictChange
 from fretc.trends.charts import chart, heat_map, strip
 from fretc.trends.comparisons import ComparisonFinding, VersionComparison
 from fretc.trends.trends import Group, Item, Trends, arrived, gone, not_selected
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics import status_symbols as signs
 from fretish.diagnostics.status_symbols import StatusSymbol
 

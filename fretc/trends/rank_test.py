@@ -14,11 +14,12 @@ Method for Discrete Data, 1990.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
+
+from fretish.classes.frozen import dataclass
 
 Stratum = tuple[Sequence[float], Sequence[float]]
 """The earlier and the later numbers, which may be infinite."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 from fretc.audit.evidence.result_summaries import EvidenceSource
 from fretc.trends.changes import (
@@ -35,6 +34,7 @@ from fretc.trends.histories import (
     verdicts_of_rounds,
 )
 from fretc.trends.left_out import is_left_out
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.reading.natural_order import natural

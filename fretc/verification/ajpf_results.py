@@ -10,7 +10,6 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path, PurePath
 
 from compiler.files.checked_json import JsonValue, SchemaError, plain
@@ -33,6 +32,7 @@ from compiler.targets.ajpf import bundle
 from compiler.targets.ajpf import properties as ajpf
 from compiler.targets.ajpf.runner import ERROR, HOLDS, SCHEMA, VIOLATED, verdict
 from compiler.targets.target import DEFAULT, TargetOptions
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source

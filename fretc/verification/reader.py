@@ -5,12 +5,12 @@ The file is not trusted: values outside the types of `compiler.logic.claims` are
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 from compiler.files import records
 from compiler.files.text_files import sha256
 from compiler.logic.claims import ClaimResult, Proof, VerificationDocument
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 
 

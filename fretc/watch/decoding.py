@@ -8,7 +8,7 @@ message with a time, it waits for that. Times are nanoseconds.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from math import isnan
 
 from mcap.records import Channel as McapChannel
@@ -23,6 +23,7 @@ from fretc.logs.messages.python_messages import Value
 from fretc.logs.signals.enum_values import UNKNOWN
 from fretc.watch.sources.source import Arrival, Channel
 from fretish.bindings.declarations import Declarations, Signal, short_type
+from fretish.classes.frozen import dataclass
 from fretish.clock import TimeSource
 from fretish.diagnostics.diagnostic import Diagnostic
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from fretc.watch.sources.source import ConnectionLost, Missed, Opened, Reconnected
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from monitors.stop_supervisor import State
 

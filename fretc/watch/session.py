@@ -7,7 +7,7 @@ up to which they are complete. Times are nanoseconds, with the meaning in `monit
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 
 from fretc.audit.one_log import signals_of
@@ -19,6 +19,7 @@ from fretc.logs.stream import ClockTick, SampleStream, StreamEnd, Withdrawn
 from fretc.watch.decoding import Decoder, Timed
 from fretc.watch.requirement_monitors import RequirementMonitors
 from fretc.watch.sources.source import Arrival
+from fretish.classes.frozen import dataclass
 from fretish.clock import TimeSource
 from fretish.diagnostics.diagnostic import Diagnostic
 from monitors.kernel.columns import rows_of

@@ -7,13 +7,14 @@ variables have no units. A number with a unit is converted exactly into that uni
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 
 from fretish import expressions as e
 from fretish.bindings import expressions as binding
 from fretish.bindings.declarations import Signal
 from fretish.bindings.expressions import MOST_TICKS_BACK, is_base, ticks_back
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic, DiagnosticError
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span

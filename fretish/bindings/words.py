@@ -8,11 +8,11 @@ number may be used as a truth value, as `docking` or `docking = true`: 1 is true
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from fretish import expressions as e
 from fretish.bindings.declarations import Signal
 from fretish.bindings.expressions import FUNCTIONS
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic, DiagnosticError, did_you_mean
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass
 from enum import Enum, StrEnum
 
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.fixes import Fix
 from fretish.diagnostics.source import Span
 

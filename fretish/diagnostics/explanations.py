@@ -6,12 +6,12 @@ file (`kind = "fret"`, the default; `declared` holds its bindings) or a bindings
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code
-from fretish.diagnostics.messages import code_tables
+from fretish.diagnostics.messages import KINDS, code_tables
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,8 +47,7 @@ ACCEPTANCES = {
 @cache
 def explanations() -> dict[str, CodeExplanation]:
     """Number of a code → its explanation."""
-    kinds = dict.fromkeys(code.number[1] for code in Code)
-    return {number: each for kind in kinds for number, each in _of_kind(kind).items()}
+    return {number: each for kind in KINDS for number, each in _of_kind(kind).items()}
 
 
 def explanation(code: Code) -> CodeExplanation:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.source import Source, Span
 
 

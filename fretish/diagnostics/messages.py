@@ -5,11 +5,11 @@ The name of a message is unique among all codes, and gives its code, severity, t
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
 
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.fixes import Fix
 from fretish.diagnostics.source import Span
@@ -33,20 +33,40 @@ def code_tables(kind: str) -> dict[str, dict[str, Any]]:
     """Number of each code that begins with this digit → its table: cause, fix, messages..."""
     import tomllib  # Imported here to make the start faster.
 
-    (file,) = _FILES.glob(f"{kind}_*.toml")
-    return tomllib.loads(file.read_text(encoding="utf-8"))
+    return tomllib.loads(_text(kind))
 
 
 @cache
-def messages() -> dict[str, Message]:
-    """Name of a message → its text; read when the first diagnostic is made."""
+def _text(kind: str) -> str:
+    (file,) = _FILES.glob(f"{kind}_*.toml")
+    return file.read_text(encoding="utf-8")
+
+
+@cache
+def messages(kind: str) -> dict[str, Message]:
+    """Name of a message → its text, for the codes that begin with this digit."""
     return {
         name: Message(
             code, row["message"], row.get("help", ""), Severity(row.get("severity", "error"))
         )
         for code in Code
-        for name, row in code_tables(code.number[1])[code.number].get("messages", {}).items()
+        if code.number[1] == kind
+        for name, row in code_tables(kind)[code.number].get("messages", {}).items()
     }
+
+
+KINDS = tuple(dict.fromkeys(code.number[1] for code in Code))
+"""The first digits of the codes; each has a file."""
+
+
+def message(name: str) -> Message:
+    """The message of that name. Only its file is parsed, because all of them take 20 ms.
+
+    Raises:
+        KeyError: there is no such message.
+    """
+    kind = next((kind for kind in KINDS if f".messages.{name}]" in _text(kind)), KINDS[0])
+    return messages(kind)[name]
 
 
 def diagnostic(
@@ -74,15 +94,15 @@ def diagnostic(
     Raises:
         KeyError: there is no such message, or a placeholder has no value.
     """
-    message = messages()[name]
+    found = message(name)
     if help is None:
-        help = message.help.format_map(values) or (fix.help if fix else None)  # noqa: A001
+        help = found.help.format_map(values) or (fix.help if fix else None)  # noqa: A001
     return Diagnostic(
-        message.code,
-        message.message.format_map(values),
+        found.code,
+        found.message.format_map(values),
         span,
         help,
-        message.severity,
+        found.severity,
         paste,
         subject,
         fix=fix,

@@ -5,7 +5,7 @@ A status is always displayed with its own word, too, so that it never depends on
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from fretish.classes.frozen import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import lru_cache
+
+from fretish.classes.frozen import dataclass
 
 _TOKEN = re.compile(r"\{(?P<name>[A-Za-z][A-Za-z0-9_-]*)\}|(?P<star>\*)|(?P<text>[^{}*]+)")
 _LONGEST, _LONGEST_PART = 200, 1000

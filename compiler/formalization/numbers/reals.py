@@ -8,7 +8,6 @@ traces that are displayed, and no proof rests on it; `compiler.logic.orders` is 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Protocol, TypeVar
 
@@ -19,6 +18,7 @@ from compiler.formalization.letters import comparisons, exclusion_in_words
 from compiler.formalization.numbers.terms import NoTermError, RequirementTerms, Term
 from compiler.logic.orders import Exclusion
 from fretish import expressions as e
+from fretish.classes.frozen import dataclass
 
 MOST_STEPS = 300_000
 """Resource limit of z3 for one query, in z3's own unit, so that every machine gives the same

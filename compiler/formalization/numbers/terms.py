@@ -6,7 +6,6 @@ A variable has the unit of its signal. If several units meet, everything is conv
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
@@ -17,6 +16,7 @@ from fretish import expressions as e
 from fretish import units
 from fretish.bindings import constants
 from fretish.bindings.types import Kind, kind
+from fretish.classes.frozen import dataclass
 from fretish.printer import expression as printed
 from fretish.reading.recursion import with_recursion_limit
 

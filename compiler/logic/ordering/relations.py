@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 
 from fretish import expressions as e
 from fretish.bindings import constants
+from fretish.classes.frozen import dataclass
 from fretish.units import number
 
 MIRRORED: Mapping[e.ComparisonOperator, e.ComparisonOperator] = {

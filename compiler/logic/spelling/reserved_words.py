@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Container
-from dataclasses import dataclass
+
+from fretish.classes.frozen import dataclass
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,10 +18,11 @@ class ReservedWords(Container[str]):
     """Words, and a pattern for families of words."""
 
     words: frozenset[str]
-    family: re.Pattern[str] | None = None
+    family: str = ""
+    """The regular expression; empty: there is none. It is compiled when it is first used."""
 
     def __contains__(self, name: object) -> bool:
-        if self.family is not None and isinstance(name, str) and self.family.fullmatch(name):
+        if self.family and isinstance(name, str) and re.fullmatch(self.family, name):
             return True
         return name in self.words
 
@@ -29,8 +31,8 @@ class ReservedWords(Container[str]):
         return ReservedWords(self.words.union(more), self.family)
 
 
-def _words(text: str, family: str | None = None) -> ReservedWords:
-    return ReservedWords(frozenset(text.split()), None if family is None else re.compile(family))
+def _words(text: str, family: str = "") -> ReservedWords:
+    return ReservedWords(frozenset(text.split()), family)
 
 
 FRET = _words(

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from importlib.resources import files
 from pathlib import PurePosixPath
@@ -30,6 +29,7 @@ from compiler.targets.ajpf.safety_function import AgentReaction, Sif, sif
 from compiler.targets.target import DEFAULT, Target, TargetOptions, stem
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Modality
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.expressions import MIRRORED

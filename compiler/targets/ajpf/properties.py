@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import partial
 from typing import Literal, assert_never
 
@@ -37,6 +36,7 @@ from fretish import syntax as s
 from fretish.bindings.comparisons import FUNCTIONS
 from fretish.bindings.declarations import Modality
 from fretish.checking import LOOK_AHEAD, LOOK_BACK, NUMBERS_BACK, calls, conditions
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.expressions import Comparison

@@ -26,9 +26,10 @@ import shutil
 import subprocess
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
+
+from fretish.classes.frozen import dataclass
 
 SCHEMA = "fretc-ajpf-result-1"
 SHOWN, REFUTED, BAD, NOT_SHOWN = 0, 1, 2, 3

@@ -14,7 +14,6 @@ once, and a guard records that.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from compiler.agents.gwendolen import Action, BeliefChange, BeliefGuard, Deed
 from compiler.formalization.formalized import FormalizedRequirement
@@ -25,6 +24,7 @@ from compiler.targets.target import not_expressible
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.bindings.declarations import Modality
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 
 _TARGET = "an agent"

@@ -9,7 +9,6 @@ Source of the verdicts: Bauer, Leucker, Schallhart, Runtime verification for LTL
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import assert_never
 
@@ -29,6 +28,7 @@ from compiler.formalization.reference import (
 )
 from compiler.logic import formula as f
 from compiler.logic.implicants import Term, cover
+from fretish.classes.frozen import dataclass
 from fretish.reading.recursion import with_recursion_limit
 from fretish.syntax import ScopeKind
 

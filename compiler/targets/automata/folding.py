@@ -7,12 +7,13 @@ on its edges. The folded chart is readable and exact.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import TRAITS, Trait
 from compiler.formalization.reference import Letter, ReferenceState
 from compiler.targets.automata.chart import START, Chart, chart, kind, words
+from fretish.classes.frozen import dataclass
 
 VIOLATED, SATISFIED = "violated", "satisfied"
 OPEN = ("open", "open twice", "owed")

@@ -9,7 +9,7 @@ language: Cavada et al., NuSMV 2.6 User Manual, chapters 2 and 3.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
@@ -24,6 +24,7 @@ from compiler.targets.automata.expressibility import no_automaton
 from compiler.targets.automata.smv_symbols import monitor
 from compiler.targets.comparison_names import comparison_names, in_words
 from compiler.targets.target import Target, file_of_each, identifier
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 
 

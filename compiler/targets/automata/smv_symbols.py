@@ -8,10 +8,10 @@ itself.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import assert_never
 
 from compiler.formalization.obligation import TRAITS, Obligation, ObligationKind, Trait
+from fretish.classes.frozen import dataclass
 from fretish.syntax import ConditionKind, ScopeKind
 
 Cases = tuple[tuple[str, str], ...]

@@ -7,7 +7,6 @@ so an analyzer has to confirm invariants, not to find them.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
@@ -15,6 +14,7 @@ from compiler.program.program import Counter
 from compiler.program.rails import RequirementValues, Ring
 from compiler.targets.c.monitor import c_printer
 from compiler.targets.c.printer import CPrinter
+from fretish.classes.frozen import dataclass
 
 ENTRY = "fretc_driver"
 """The function that never returns."""

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import Any
 
@@ -24,6 +23,7 @@ from compiler.targets.c.printer import CPrinter
 from compiler.targets.python.monitor import description, refusal, remark
 from compiler.targets.python.names import module, prefixes_of
 from compiler.targets.target import DEFAULT, Target, TargetOptions, stem
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.recursion import with_recursion_limit
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from typing import assert_never
 
 from compiler.program.program import Counter, StoredFlag
 from compiler.program.rails import Cell, Deadline, Ring
 from compiler.program.statements import Statements
 from compiler.program.values import Constant, Literal, Value, Variable
+from fretish.classes.frozen import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from fractions import Fraction
 from math import ceil, floor, inf
 
 from compiler.signals.printing import parts
+from fretish.classes.frozen import dataclass
 from monitors.kernel.readings import Constant, Single, exact
 
 _WHOLE = 2**52

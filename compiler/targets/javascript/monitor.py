@@ -7,7 +7,6 @@ both values of each signal.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import PurePosixPath
 
 from compiler.files.artifact import Artifact
@@ -23,6 +22,7 @@ from compiler.targets.python.input_adapter import InputAdapter, input_adapter
 from compiler.targets.python.monitor import description, description_of, refusal, remark, watched
 from compiler.targets.python.names import module
 from compiler.targets.target import DEFAULT, Target, TargetOptions, stem
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.recursion import with_recursion_limit
 

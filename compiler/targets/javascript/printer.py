@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import NamedTuple, assert_never
 
 from compiler.program.instructions import (
@@ -30,6 +29,7 @@ from compiler.program.program import (
     WindowMemory,
 )
 from compiler.program.values import Age, And, Constant, Literal, Not, Or, Value, Variable
+from fretish.classes.frozen import dataclass
 
 _OR, _AND, _COMPARED, _ATOMIC = range(4)
 """Precedence ranks of operators: a higher rank binds tighter."""

@@ -12,13 +12,14 @@ from __future__ import annotations
 import itertools
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from fractions import Fraction
 
 from compiler.files.templating import python
 from compiler.formalization.obligation import variable
 from fretish import expressions as e
 from fretish.bindings.constants import called, computed, whole_exponent
+from fretish.classes.frozen import dataclass
 from fretish.units import unit
 
 NUMBER, TRUTH, WORD = "number", "truth", "word"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import atom, variable
@@ -21,6 +20,7 @@ from fretish import expressions as e
 from fretish.bindings.comparisons import is_measured
 from fretish.bindings.declarations import Reading, Reduce, Signal
 from fretish.checking import conditions
+from fretish.classes.frozen import dataclass
 from fretish.reading.recursion import with_recursion_limit
 
 

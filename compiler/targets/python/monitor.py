@@ -10,7 +10,6 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import Any
 
@@ -38,6 +37,7 @@ from compiler.targets.python.program import (
 from compiler.targets.target import DEFAULT, Target, TargetOptions, not_expressible, stem
 from fretish import syntax as s
 from fretish.checking import LOOK_AHEAD, calls, conditions
+from fretish.classes.frozen import dataclass
 from fretish.clock import assumed_ticks
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic

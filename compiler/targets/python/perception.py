@@ -8,7 +8,6 @@ call the functions of `monitors.kernel.readings`, as `compiler.signals` defines 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from typing import assert_never
 
 from compiler.files.build_id import __version__
@@ -18,6 +17,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.signals import numbers as n
 from compiler.signals.policies import PropositionFunctions, SamplePolicy, instant
 from fretish.bindings.declarations import Declarations, Reduce
+from fretish.classes.frozen import dataclass
 from fretish.clock import TimeSource
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple, assert_never
 
 from compiler.formalization.past import MonitorSpec
@@ -12,6 +11,7 @@ from compiler.program import instructions as i
 from compiler.program import program as p
 from compiler.program import values as v
 from compiler.program.lowering import program as lowered
+from fretish.classes.frozen import dataclass
 from fretish.reading.recursion import with_recursion_limit
 
 _OR, _AND, _ATOMIC = range(3)

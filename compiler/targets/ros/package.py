@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import PurePosixPath
 
 from compiler.files.attribution import EXAMPLE, Attribution
@@ -23,6 +22,7 @@ from compiler.targets.target import TargetOptions, stem
 from compiler.targets.witness_traces import witness_traces
 from fretish.bindings.declarations import Interception, Signal, short_type
 from fretish.bindings.tables.interceptor import TABLE
+from fretish.classes.frozen import dataclass
 from fretish.clock import TimeSource
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.messages import diagnostic

@@ -6,7 +6,9 @@ import math
 import signal
 import sys
 import time
-from dataclasses import dataclass, field
+from dataclasses import field
+
+from fretish.classes.frozen import dataclass
 
 
 class OutOfTimeError(Exception):

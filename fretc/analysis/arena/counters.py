@@ -7,7 +7,6 @@ the scope, the trigger of the condition, the count of the timing. Tests compare 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import assert_never
 
 from compiler.formalization.formalized import FormalizedRequirement
@@ -30,6 +29,7 @@ from fretc.analysis.arena.memory import (
     successor,
 )
 from fretc.analysis.arena.variables import Numbers, UnsupportedError
+from fretish.classes.frozen import dataclass
 from fretish.reading.recursion import with_recursion_limit
 from fretish.syntax import ConditionKind, ScopeKind
 

@@ -7,7 +7,6 @@ computed by arithmetic: a bound of a million ticks has twenty bits.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from itertools import chain
 from typing import assert_never
 
@@ -15,6 +14,7 @@ from compiler.logic import formula as f
 from compiler.logic.diagrams import decision_diagrams as bdd
 from compiler.logic.diagrams.decision_diagrams import Function
 from fretc.analysis.arena.variables import Numbers, UnsupportedError, numbers
+from fretish.classes.frozen import dataclass
 
 Word = Sequence[Function]
 """Bits of a whole number from 0 on, lowest first."""

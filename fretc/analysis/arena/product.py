@@ -9,7 +9,6 @@ the construction does not end.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.diagrams.decision_diagrams import Function
@@ -17,6 +16,7 @@ from fretc.analysis.arena.alphabet import Alphabet
 from fretc.analysis.arena.counters import counter
 from fretc.analysis.arena.memory import Bit, RequirementCounter
 from fretc.analysis.arena.variables import Numbers, UnsupportedError
+from fretish.classes.frozen import dataclass
 
 
 @dataclass(frozen=True, slots=True)

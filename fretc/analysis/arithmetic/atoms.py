@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 
 import z3
@@ -21,6 +21,7 @@ from fretc.analysis.arena.variables import UnsupportedError
 from fretc.analysis.arithmetic.durations import DurationProposition, parted
 from fretc.analysis.arithmetic.readings import AtomReading, readings
 from fretc.analysis.arithmetic.steps import AtomOfTick, AtomStep, Steps, linked, tick, unknown
+from fretish.classes.frozen import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,6 @@ patterns; the inputs of a pattern are found by eliminating the outputs. So the a
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 
 import z3
@@ -17,6 +16,7 @@ from compiler.formalization.numbers.terms import Term, read_by
 from fretc.analysis.arena.variables import UnsupportedError
 from fretc.analysis.arithmetic.projection import Limit, projected
 from fretc.analysis.arithmetic.projection import model as next_model
+from fretish.classes.frozen import dataclass
 
 MOST = 4_096
 """Maximum number of patterns, or cells, of a group; larger groups are refused."""

@@ -8,7 +8,7 @@ in force at the end; a count stores the rest. In the first 200 ms of a log the v
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import product
 
 from compiler.logic.diagrams import decision_diagrams as bdd
@@ -26,6 +26,7 @@ from fretc.analysis.arena.variables import UnsupportedError
 from fretc.analysis.arithmetic.readings import AtomReading
 from fretish import expressions as e
 from fretish.bindings.declarations import Aggregate
+from fretish.classes.frozen import dataclass
 from fretish.printer import expression as printed
 
 _MOST = 3

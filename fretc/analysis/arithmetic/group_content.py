@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import z3
 
@@ -12,6 +12,7 @@ from fretc.analysis.arena.roles import Roles
 from fretc.analysis.arena.variables import UnsupportedError
 from fretc.analysis.arithmetic.atoms import Atoms
 from fretish.bindings.declarations import Role
+from fretish.classes.frozen import dataclass
 
 
 @dataclass(frozen=True, slots=True)

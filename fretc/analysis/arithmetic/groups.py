@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 import z3
 
@@ -28,6 +27,7 @@ from fretc.analysis.arithmetic.cells import (
 from fretc.analysis.arithmetic.group_content import GroupContent
 from fretc.analysis.arithmetic.projection import Limit
 from fretish.bindings.declarations import Role
+from fretish.classes.frozen import dataclass
 
 
 class ComparisonGroup:

@@ -8,7 +8,6 @@ result is unknown.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import ceil, floor
 
 import z3
@@ -17,6 +16,7 @@ from compiler.formalization.numbers.terms import PreviousValue, Term, read_by
 from fretc.analysis.arithmetic.atoms import Atoms, NumericAtom
 from fretc.analysis.arithmetic.steps import AtomOfTick
 from fretc.analysis.arithmetic.thresholds import Bound, reached
+from fretish.classes.frozen import dataclass
 
 
 @dataclass(frozen=True, slots=True)

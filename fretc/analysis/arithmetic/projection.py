@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from fractions import Fraction
 
 import z3
@@ -21,6 +21,7 @@ import z3
 from compiler.formalization.numbers.terms import Term
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.variables import UnsupportedError
+from fretish.classes.frozen import dataclass
 
 SECONDS = 10.0
 """CPU seconds for a group of comparisons."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import comparisons
@@ -11,6 +10,7 @@ from compiler.formalization.resolution import candidates
 from fretish import expressions as e
 from fretish.bindings.declarations import Aggregate, Signal
 from fretish.bindings.expressions import ticks_back
+from fretish.classes.frozen import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,13 +12,13 @@ patterns possible that new samples of all signals do not, the atoms are refused.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
 from typing import assert_never
 
 import z3
 
 from compiler.formalization.numbers.terms import Term
 from fretish.bindings.declarations import Aggregate
+from fretish.classes.frozen import dataclass
 
 
 @dataclass(frozen=True, slots=True)

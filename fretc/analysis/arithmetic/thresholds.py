@@ -12,7 +12,6 @@ computed backwards, comparison by comparison.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
 
@@ -20,6 +19,7 @@ import z3
 from z3 import z3util
 
 from compiler.formalization.numbers.terms import Term, read_by
+from fretish.classes.frozen import dataclass
 
 _MOST = 64
 """Maximum number of alternatives of a comparison; beyond it no bound is computed."""

@@ -6,10 +6,10 @@ A circuit is plain data: it goes from process to process, and into templates.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 from compiler.logic.diagrams import decision_diagrams as bdd
 from fretc.analysis.controllers.machine import MealyMachine, NoMachineError
+from fretish.classes.frozen import dataclass
 
 MOST_NODES = 20_000
 """Maximum number of nodes of a circuit; each is a line of a program."""

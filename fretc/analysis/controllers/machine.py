@@ -7,13 +7,13 @@ environment violate assumptions only if nothing else wins.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 
 from compiler.logic.diagrams import decision_diagrams as bdd
 from compiler.logic.diagrams.decision_diagrams import Function
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.games.game import Game, Goal, Solution
+from fretish.classes.frozen import dataclass
 
 
 class NoMachineError(Exception):

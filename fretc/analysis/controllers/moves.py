@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 from compiler.logic.diagrams import decision_diagrams as bdd
 from compiler.logic.diagrams.decision_diagrams import Function
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.controllers.machine import MealyMachine, NoMachineError
+from fretish.classes.frozen import dataclass
 
 MOST_STATES, MOST_MOVES = 1_000, 10_000
 """Maximum size of an automaton that is written."""

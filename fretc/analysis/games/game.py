@@ -10,7 +10,6 @@ Zielonka, Infinite games on finitely coloured graphs, TCS 200 (1998) (strategies
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 from compiler.logic.diagrams import decision_diagrams as bdd
 from compiler.logic.diagrams.decision_diagrams import Function
@@ -20,6 +19,7 @@ from fretc.analysis.arena.memory import RequirementCounter
 from fretc.analysis.arena.transition import Transition
 from fretc.analysis.games.runs import SatisfyingRuns
 from fretc.analysis.games.squaring import IterativeSquaring, TransitionRelation, identity
+from fretish.classes.frozen import dataclass
 
 Letter = Mapping[int, bool]
 """A value of each input and output."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 from compiler.logic.diagrams import decision_diagrams as bdd
 from compiler.logic.diagrams.decision_diagrams import Function
@@ -12,6 +11,7 @@ from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.transition import State
 from fretc.analysis.games.game import Game, Letter, Solution, Trap, whole
 from fretc.analysis.games.squaring import RelationTooLargeError, TransitionRelation
+from fretish.classes.frozen import dataclass
 
 Run = tuple[Letter, int]
 """A valuation, and its number of ticks."""

@@ -11,7 +11,6 @@ Source: Biere et al., Bounded model checking, Advances in Computers 58 (2003), f
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 import z3
 
@@ -28,6 +27,7 @@ from fretc.analysis.arithmetic.alphabet import Cells
 from fretc.analysis.arithmetic.atoms import Atoms
 from fretc.analysis.games.replay import ROUNDS, kept
 from fretish.bindings.declarations import Role
+from fretish.classes.frozen import dataclass
 
 LONGEST = 40
 """Maximum number of ticks of a lasso."""

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from itertools import pairwise
 
 from compiler.logic.diagrams import decision_diagrams as bdd
@@ -19,6 +18,7 @@ from compiler.logic.diagrams.decision_diagrams import Function
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.memory import Bit, RequirementCounter
 from fretc.analysis.arena.transition import State
+from fretish.classes.frozen import dataclass
 
 MOST_NODES = 10_000
 """Maximum number of nodes of a relation; larger ones cost more than single ticks."""

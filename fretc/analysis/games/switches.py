@@ -7,7 +7,6 @@ gives the switch settings for which the system wins, in place of hundreds of gam
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from compiler.logic.diagrams import decision_diagrams as bdd
 from compiler.logic.diagrams.decision_diagrams import Function
@@ -15,6 +14,7 @@ from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.variables import Numbers
 from fretc.analysis.games.cores import Members
 from fretc.analysis.games.game import Game
+from fretish.classes.frozen import dataclass
 
 MOST_NODES = 100_000
 """Maximum number of nodes of the diagram of requirements and switches."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import partial
 from typing import Any
 
@@ -22,6 +22,7 @@ from fretc.logs.reader import read
 from fretc.logs.signals.samples import Recording
 from fretc.logs.signals.traces import trace
 from fretish.bindings.declarations import Declarations, Signal
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics import status_symbols as signs
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic

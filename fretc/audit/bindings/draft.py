@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import gcd
 
 from compiler.files.build_id import __version__
@@ -25,6 +25,7 @@ from fretish import expressions as e
 from fretish import syntax as s
 from fretish.bindings.amounts import duration
 from fretish.bindings.declarations import Declarations, Role, path, short_type
+from fretish.classes.frozen import dataclass
 from fretish.clock import NANOSECONDS, in_words
 
 _TICK = 100 * 10**6

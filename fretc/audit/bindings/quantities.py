@@ -8,7 +8,8 @@ nothing else); REP 117 (readings out of range).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+
+from fretish.classes.frozen import dataclass
 
 _REP_117 = '{ nan = "drop", "+inf" = "far", "-inf" = "near", other = "drop", empty = "unknown" }'
 

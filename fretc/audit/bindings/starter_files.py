@@ -7,7 +7,6 @@ its first audit shows something, and a person puts the true limit in its place.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from decimal import ROUND_CEILING, Decimal
 from pathlib import Path
 
@@ -20,6 +19,7 @@ from fretc.logs.signals.samples import Recording
 from fretc.logs.storage.log_names import name_of
 from fretish.bindings.declarations import Declarations, Signal
 from fretish.bindings.tables.reader import read_bindings
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from compiler.situations.situations import Situation
 from fretc.audit.evidence.basis import Basis
 from fretc.audit.measurements.count_trials import RequiredProbability
 from fretc.audit.measurements.violations import DemandText
+from fretish.classes.frozen import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 from compiler.files.checked_json import SchemaError, parsed
@@ -28,6 +27,7 @@ from fretc.audit.evidence.schema import (
     Situations,
     ThresholdRecord,
 )
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source
 from monitors import kernel

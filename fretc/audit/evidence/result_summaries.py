@@ -7,7 +7,7 @@ sorts them reads summaries, and asks for the few results that it shows in full.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import field, fields
 from operator import attrgetter
 from statistics import median
 from typing import Any, Protocol
@@ -41,6 +41,7 @@ from fretc.audit.evidence.schema import (
 )
 from fretc.audit.measurements.trials import Trials
 from fretish.bindings.canonical import digest
+from fretish.classes.frozen import dataclass
 from fretish.clock import period_of
 
 Recorded = tuple[str | UnsetType, ...]

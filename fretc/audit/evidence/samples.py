@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import pairwise
 from math import inf
 from typing import Annotated, Generic, Literal, TypeVar
 
 from compiler.files.records import UNSET, Meta, Number, Record, UnsetType, Whole, about
+from fretish.classes.frozen import dataclass
 
 _INFINITE = {"+inf": inf, "-inf": -inf}
 _FEW = Meta(max_length=50)

@@ -40,11 +40,11 @@ from fretc.audit.evidence.samples import (
     check_series,
     window,
 )
+from fretc.audit.measurements.intervals import Moment as Moment
 from fretc.audit.measurements.tallies import PropositionTally
 from fretc.audit.measurements.trials import Trials
 from fretc.audit.measurements.unknown_inputs import MOST as MOST_UNKNOWN
 from fretc.audit.measurements.unknown_inputs import UnknownInput
-from fretc.audit.measurements.violations import Moment as Moment
 
 SCHEMA: Final = "fretc-evidence-1"
 Verdict = Literal["satisfied", "violated", "inconclusive", "vacuous", "no data"]

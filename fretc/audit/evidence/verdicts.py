@@ -10,10 +10,10 @@ Sources: the JUnit schema of the Jenkins xUnit plugin; OASIS, SARIF Version 2.1.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from enum import StrEnum
 
 from fretc.audit.measurements.confidence_intervals import REFUTED, SUPPORTED
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics import status_symbols as signs
 from fretish.diagnostics.status_symbols import StatusSymbol
 from monitors import kernel

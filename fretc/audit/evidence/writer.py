@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from math import isinf, isnan
 from statistics import median
 from typing import TypeVar, cast
@@ -33,16 +32,18 @@ from fretc.audit.evidence.schema import (
     Verdict,
     Violation,
 )
+from fretc.audit.measurements.intervals import Moment
 from fretc.audit.measurements.margins import CROSSED, Margin
 from fretc.audit.measurements.tallies import PropositionTally
 from fretc.audit.measurements.trials import Trials
 from fretc.audit.measurements.unknown_inputs import UnknownInput
-from fretc.audit.measurements.violations import Moment, SampleWindow
+from fretc.audit.measurements.violations import SampleWindow
 from fretc.audit.measurements.violations import ViolationInterval as Broken
 from fretc.audit.phases.by_shift import PhaseInterval, Phases
 from fretc.logs.signals.enum_values import enum_value
 from fretc.logs.signals.samples import Recording, Samples
 from fretc.logs.signals.samples import Topic as Read
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.rendering import as_json
 from monitors.kernel import Outcome

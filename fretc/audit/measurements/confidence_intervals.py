@@ -23,16 +23,18 @@ What is open counts both ways: as failed for the lower bound, as answered for th
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil, log
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import TYPE_CHECKING, TypeAlias
 
 from compiler.files.records import Record, Share
 from fretc.audit.measurements.trials import Trials
+from fretish.classes.frozen import dataclass
 from fretish.expressions import ComparisonOperator
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 SUPPORTED, REFUTED, INCONCLUSIVE = "supported", "refuted", "inconclusive"
 ANSWERS = (SUPPORTED, REFUTED, INCONCLUSIVE)
@@ -40,11 +42,11 @@ ANSWERS = (SUPPORTED, REFUTED, INCONCLUSIVE)
 CONFIDENCE = 0.95
 _GRAIN = 10**9
 """The precision of bounds; they are rounded outwards, so that every machine gives the same."""
-_BETS = np.array([1, 7 / 8, 3 / 4, *(2.0**-k for k in range(1, 17))])
+_BETS = (1, 7 / 8, 3 / 4, *(2.0**-k for k in range(1, 17)))
 """Fractions of the capital that a bet stakes. The whole is best if no trigger failed, as with
 Clopper-Pearson's bound for so many runs; small fractions are best for many runs that differ
 little."""
-_STAKES = np.array([1 / 2, 1 / 8, 1 / 8, *(2.0 ** -min(k + 2, 17) for k in range(1, 17))])
+_STAKES = (1 / 2, 1 / 8, 1 / 8, *(2.0 ** -min(k + 2, 17) for k in range(1, 17)))
 """The initial capital of each bet; their sum is 1."""
 _SLACK = 1e-9
 """The tolerance of a logarithm, larger than its rounding error."""
@@ -122,12 +124,14 @@ def bounds(runs: Sequence[Trials], confidence: float) -> Bounds:
 
 Tally = Sequence[tuple[int, int]]
 """For each run, the number of its decided triggers and of all its triggers."""
-Table = NDArray[np.float64]
+Table: TypeAlias = "NDArray[np.float64]"
 """Shape (3, n): both numbers, as fractions of the most triggers of a run, and the number of equal
 runs."""
 
 
 def _table(runs: Tally) -> Table:
+    import numpy as np  # Reports and evidence without a probability do not need it.
+
     if not runs:
         return np.empty((3, 0))
     rows, times = np.unique(np.array(runs, np.int64), axis=0, return_counts=True)
@@ -146,6 +150,8 @@ def _least(runs: Tally, confidence: float) -> float:
 
 def _worths(table: Table, share: float) -> NDArray[np.float64]:
     """The logarithm of the capital of each bet against the share."""
+    import numpy as np
+
     good, count, times = table
     with np.errstate(divide="ignore"):  # a bet of the whole capital may lose all of it
         return np.asarray(np.log1p(np.outer(_BETS, good / share - count)) @ times)
@@ -153,6 +159,8 @@ def _worths(table: Table, share: float) -> NDArray[np.float64]:
 
 def _reaches(worths: NDArray[np.float64], confidence: float) -> bool:
     """Whether the mean capital of all bets reaches the level of rejection."""
+    import numpy as np
+
     each = worths + np.log(_STAKES)
     most = float(each.max())
     return most + log(float(np.exp(each - most).sum())) >= _SLACK - log(1 - confidence)
@@ -201,8 +209,10 @@ def needed(estimate: Estimate, op: ComparisonOperator, bound: Fraction) -> int |
         return None
     if not goal:
         return 1
+    import numpy as np
+
     runs = [(r.failed if down else r.answered, r.count) for r in estimate.counted]
-    before, gain = _worths(_table(runs), goal), np.log1p(_BETS * (1 / goal - 1))
+    before, gain = _worths(_table(runs), goal), np.log1p(np.array(_BETS) * (1 / goal - 1))
 
     def enough(more: int) -> bool:
         return len(runs) + more > 1 and _reaches(before + more * gain, estimate.confidence)

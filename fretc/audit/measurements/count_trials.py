@@ -9,7 +9,7 @@ triggers of the runs, and each is met or not by that very formula, read at the t
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from compiler.formalization import predicates
 from compiler.formalization.formalized import FormalizedRequirement
@@ -19,6 +19,7 @@ from compiler.formalization.past import scope_formulas
 from compiler.logic.evaluation import evaluate_unknown
 from compiler.logic.formula import FALSE, Formula
 from fretc.audit.measurements.trials import Trials
+from fretish.classes.frozen import dataclass
 from fretish.expressions import ComparisonOperator
 from fretish.reading.recursion import with_recursion_limit
 from monitors.kernel import Column

@@ -6,9 +6,17 @@ its last one. Where the clock ticks by message, evidence does not have the time 
 
 from __future__ import annotations
 
-from fretc.audit.measurements.violations import Moment
+from compiler.files.records import Count, Record, Seconds, Whole
 from fretish.bindings.amounts import duration, seconds
 from fretish.clock import period_of
+
+
+class Moment(Record, frozen=True):
+    """A tick with its time: `ns` on the clock of the log, `seconds` from the first tick."""
+
+    tick: Count
+    ns: Whole
+    seconds: Seconds
 
 
 def end_ns(last: Moment, clock: str) -> int | None:

@@ -6,7 +6,6 @@ Times are nanoseconds, numbers are in base units.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -15,6 +14,7 @@ from fretc.logs.signals.propositions import TRUE, UNKNOWN, History, history_of, 
 from fretc.logs.signals.samples import Recording, Times
 from fretc.logs.signals.thresholds import Threshold, thresholds
 from fretish.bindings.declarations import Declarations, Proposition
+from fretish.classes.frozen import dataclass
 
 CROSSED = "crossed"
 

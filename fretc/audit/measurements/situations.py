@@ -10,13 +10,13 @@ at a threshold.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 from compiler.logic import formula as f
 from compiler.logic.completions import first_ticks
 from compiler.logic.evaluation import evaluate, evaluate_unknown_all
 from compiler.situations.situations import Situation
 from compiler.situations.thresholds import ThresholdPosition
+from fretish.classes.frozen import dataclass
 from monitors.kernel import Column
 
 

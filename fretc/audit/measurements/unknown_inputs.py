@@ -8,17 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import islice, pairwise
-from typing import Annotated, Literal
-
-import numpy as np
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from compiler.files.records import Count, Record, Seconds, Whole, about
-from fretc.audit.measurements.intervals import interval_words
-from fretc.audit.measurements.violations import Moment
-from fretc.logs.signals.samples import Recording
+from fretc.audit.measurements.intervals import Moment, interval_words
 from fretish.bindings.declarations import Declarations
 from monitors.kernel import Column
 from monitors.kernel.columns import runs_of
+
+if TYPE_CHECKING:
+    from fretc.logs.signals.samples import Recording
 
 MOST = 100
 """The most intervals of one result."""
@@ -113,6 +112,8 @@ def _causes(
     signals: Sequence[str], before: int, now: int, declarations: Declarations, recording: Recording
 ) -> Iterator[tuple[str, UnknownCause]]:
     """The signals that are unknown between the tick before and now, and why."""
+    import numpy as np
+
     for name in signals:
         signal, samples = declarations.signals[name], recording.samples.get(name)
         late = recording.late.get(signal.path.topic)

@@ -7,14 +7,14 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from compiler.files.records import Count, Record, Seconds, Whole
+from fretc.audit.measurements.intervals import Moment
 from fretc.logs.signals.enum_values import enum_value
 from fretc.logs.signals.samples import Recording, Samples, Values, scaled
+from fretish.classes.frozen import dataclass
 from monitors.kernel import Outcome
 
 SURROUNDINGS = 2 * 10**9
@@ -25,14 +25,6 @@ EVEN_SAMPLES = MOST_SAMPLES - 3
 """The number of samples that are kept at even distances, if there are more than `MOST_SAMPLES`."""
 MOST_WINDOWS = 100
 """The most violations of one run and requirement with their samples."""
-
-
-class Moment(Record, frozen=True):
-    """A tick with its time: `ns` on the clock of the log, `seconds` from the first tick."""
-
-    tick: Count
-    ns: Whole
-    seconds: Seconds
 
 
 @dataclass(frozen=True, slots=True)

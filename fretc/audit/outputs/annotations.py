@@ -13,7 +13,6 @@ import json
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from io import BytesIO
 from itertools import chain, count, takewhile
 from pathlib import Path
@@ -32,6 +31,7 @@ from fretc.audit.measurements.intervals import end_ns
 from fretc.audit.measurements.states import OPEN, UNKNOWN
 from fretc.audit.outputs.violated_values import values
 from fretish.bindings.amounts import duration, seconds
+from fretish.classes.frozen import dataclass
 from monitors import kernel
 
 VERDICTS = "/fretc/verdicts"

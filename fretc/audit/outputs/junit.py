@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from xml.etree import ElementTree
 
 from fretc.audit.evidence import verdicts
@@ -17,6 +16,7 @@ from fretc.audit.evidence.schema import Result
 from fretc.audit.measurements.intervals import interval_words
 from fretc.audit.outputs.totals import runs
 from fretc.audit.outputs.violated_values import values
+from fretish.classes.frozen import dataclass
 from fretish.documents import RequirementEntry
 
 _NOT_XML = re.compile("[^\t\n\r\u0020-~\u00a0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")

@@ -11,7 +11,6 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -28,6 +27,7 @@ from fretc.audit.evidence.schema import Result
 from fretc.audit.evidence.verdicts import CURRENT, SUSPECT, MessageLevel
 from fretc.audit.outputs.violated_values import reason
 from fretc.logs.storage.log_names import path_of
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Span
 from fretish.documents import RequirementEntry

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Protocol, TypeVar
 
 from fretc.audit.evidence.probabilities import Estimated
@@ -13,6 +12,7 @@ from fretc.audit.evidence.schema import Result, Violation
 from fretc.audit.evidence.verdicts import BROKEN, SHOWN, VERDICTS
 from fretc.audit.measurements.confidence_intervals import REFUTED, SUPPORTED
 from fretc.audit.measurements.trials import Trials
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.status_symbols import StatusSymbol
 from monitors import kernel
 

@@ -6,10 +6,10 @@ Phases are nanoseconds modulo the tick: after the last one comes the first.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 from fretc.audit.phases.by_shift import Phases
 from fretish.bindings.declarations import Declarations
+from fretish.classes.frozen import dataclass
 from fretish.clock import in_words
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.messages import diagnostic

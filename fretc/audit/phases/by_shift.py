@@ -12,7 +12,6 @@ that leaves it open is divided.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from heapq import heappop, heappush
 from itertools import pairwise
@@ -22,6 +21,7 @@ from fretc.audit.phases.sliding import PropositionByPhase, PropositionsByPhase, 
 from fretc.logs.signals.samples import Recording
 from fretish.bindings.amounts import duration
 from fretish.bindings.declarations import Declarations
+from fretish.classes.frozen import dataclass
 from monitors.kernel import Monitor
 from monitors.kernel.verdicts import Verdict
 

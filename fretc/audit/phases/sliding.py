@@ -7,7 +7,6 @@ later. The value at tick k changes only at finitely many phases, and each of the
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +23,7 @@ from fretc.logs.signals.traces import (
     packed,
 )
 from fretish.bindings.declarations import Declarations, Proposition
+from fretish.classes.frozen import dataclass
 from monitors.kernel import Column
 
 

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from datetime import datetime
 
 from fretc.audit.evidence.schema import Selection
-from fretc.audit.selection.dates import is_older
 from fretc.logs.storage.log_names import name_of
 
 
@@ -24,6 +23,8 @@ def chosen(
     """
     if than is None and sample is None:
         return [*logs], None
+    from fretc.audit.selection.dates import is_older  # It reads logs.
+
     recent = [log for log in logs if than is None or not is_older(log, than)]
     selected = recent if sample is None else _sample(recent, sample, seed)
     return selected, Selection(

@@ -10,7 +10,6 @@ import os
 from bisect import bisect_right
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate, chain, groupby
 from pathlib import Path
@@ -62,6 +61,7 @@ from fretc.audit.store.container import (
     unpacked,
     whole_results,
 )
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 
 T = TypeVar("T")

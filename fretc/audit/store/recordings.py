@@ -13,7 +13,7 @@ import json
 import os
 import stat
 from collections.abc import Mapping, Sequence
-from dataclasses import astuple, dataclass, replace
+from dataclasses import astuple, replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any, Literal
@@ -28,6 +28,7 @@ from fretc.logs.signals.samples import Late, Recording, Samples, Topic
 from fretc.logs.storage.folders import is_folder
 from fretc.logs.storage.log_names import name_of
 from fretish.bindings.declarations import Declarations
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source, Span
 from fretish.system.files import NO_LINK, NO_WAIT, TO_READ

@@ -11,7 +11,7 @@ import hmac
 import json
 import os
 from collections.abc import Iterator, Mapping
-from dataclasses import astuple, dataclass
+from dataclasses import astuple
 from pathlib import Path
 from sqlite3 import Connection
 from typing import Annotated, Any
@@ -22,6 +22,7 @@ from compiler.files.records import Record, Whole, about, decoded
 from compiler.files.text_files import Stamp, file_sha256, stamp
 from fretc.audit.store.container import Row, check_record, record_of, rows
 from fretc.audit.store.recordings import KnownBy
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source, Span
 

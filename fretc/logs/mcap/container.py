@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cache, lru_cache
 from io import BufferedReader, BytesIO
 from typing import TYPE_CHECKING, TypeVar
@@ -19,6 +19,8 @@ import numpy as np
 from mcap.data_stream import ReadDataStream
 from mcap.opcode import Opcode
 from mcap.records import Channel, Chunk, ChunkIndex, Schema, Statistics
+
+from fretish.classes.frozen import dataclass
 
 try:  # more than ten times as fast as `zlib`
     from zlib_ng.zlib_ng import crc32 as crc32

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from io import BufferedReader
 
 from fretc.logs.mcap.container import BLOCK, HEAD, BrokenError, crc32, summary
@@ -20,6 +20,7 @@ from fretc.logs.mcap.projection import Projection
 from fretc.logs.mcap.walk import Walk
 from fretc.logs.signals.integrity import Checked, Integrity
 from fretc.logs.signals.samples import Gap
+from fretish.classes.frozen import dataclass
 
 
 @dataclass(frozen=True, slots=True)

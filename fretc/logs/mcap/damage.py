@@ -7,10 +7,11 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Collection
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from fretc.logs.mcap.container import Summary
 from fretc.logs.signals.samples import Gap
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code
 
 LATEST = 2**62

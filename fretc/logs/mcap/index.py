@@ -7,7 +7,6 @@ and messages as stated. In any other log each record must be read (`fretc.logs.m
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass
 from io import BufferedReader
 
 from mcap.opcode import Opcode
@@ -24,6 +23,7 @@ from fretc.logs.mcap.container import (
 )
 from fretc.logs.mcap.metadata import LARGEST as LARGEST_METADATA
 from fretc.logs.mcap.metadata import Described, described, together
+from fretish.classes.frozen import dataclass
 
 _PASSED_BY = frozenset({Opcode.HEADER, Opcode.ATTACHMENT, Opcode.METADATA})
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import ClassVar, Protocol
 
 import numpy as np
@@ -11,6 +10,7 @@ from numpy.typing import NDArray
 
 from fretc.logs.mcap.container import ChannelDefinition
 from fretc.logs.mcap.payloads import Bytes, Payloads, Places
+from fretish.classes.frozen import dataclass
 
 _FIELDS = [("channel", "<u2"), ("sequence", "<u4"), ("log", "<u8"), ("publish", "<u8")]
 _HEAD = np.dtype(_FIELDS)

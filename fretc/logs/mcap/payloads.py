@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+
+from fretish.classes.frozen import dataclass
 
 Bytes = NDArray[np.uint8]
 Places = NDArray[np.int64]

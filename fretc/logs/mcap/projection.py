@@ -13,7 +13,7 @@ from __future__ import annotations
 import struct
 from collections import Counter, defaultdict
 from collections.abc import Container
-from dataclasses import dataclass, field
+from dataclasses import field
 from io import BufferedReader
 
 import numpy as np
@@ -36,6 +36,7 @@ from fretc.logs.mcap.index import Index, is_known
 from fretc.logs.mcap.messages import FileTimes, Messages, Sink, record_heads
 from fretc.logs.mcap.payloads import Places
 from fretc.logs.signals.integrity import Checked
+from fretish.classes.frozen import dataclass
 
 _SLACK = 4096
 """The expected bytes of the last message of a chunk, until a longer message comes."""

@@ -10,7 +10,6 @@ import struct
 from bisect import bisect_right
 from collections import Counter
 from collections.abc import Callable, Collection
-from dataclasses import dataclass
 from io import BufferedReader
 
 import numpy as np
@@ -41,6 +40,7 @@ from fretc.logs.mcap.messages import Messages, Sink
 from fretc.logs.mcap.metadata import Described, described, together
 from fretc.logs.signals.integrity import Checked
 from fretc.logs.signals.samples import Gap, distinct
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code
 
 _MESSAGE = struct.Struct("<HIQQ")

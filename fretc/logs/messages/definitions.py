@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+
+from fretish.classes.frozen import dataclass
 
 NUMBERS: Mapping[str, str] = {
     "bool": "?",

@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +19,7 @@ from numpy.typing import NDArray
 from fretc.logs.mcap.payloads import Payloads, Places
 from fretc.logs.messages.definitions import CARRIED, NUMBERS, TEXTS, MessageField, Types
 from fretc.logs.signals.samples import distinct
+from fretish.classes.frozen import dataclass
 
 Where = tuple[str, ...]
 """The names of fields from the message down."""

@@ -6,7 +6,6 @@ Numbers are in the unit of the field, clearances in metres; NaN is unknown.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +18,7 @@ from fretc.logs.signals.samples import EXACT, Numbers, Values, scaled
 from fretc.logs.signals.signals import clearance, mean, unrounded
 from fretish import expressions as e
 from fretish.bindings.declarations import InvalidReadings, Reading, Reduce, Signal
+from fretish.classes.frozen import dataclass
 from fretish.expressions import MIRRORED
 from fretish.reading.caching import cache_by_identity
 

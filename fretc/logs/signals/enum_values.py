@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from math import isnan
 from numbers import Real
@@ -14,6 +13,7 @@ from numpy.typing import NDArray
 from fretc.logs.signals.samples import Numbers, Values
 from fretc.logs.signals.signals import FieldError, UnstatedError, field_of, fields
 from fretish.bindings.declarations import Signal
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.rendering import visible
 
 UNKNOWN = float("nan")

@@ -8,7 +8,7 @@ unit.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from fractions import Fraction
 from functools import lru_cache, reduce
 from math import ceil, floor, isfinite
@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from fretc.logs.signals.samples import EXACT, WHOLE, Numbers, Values, scaled
 from fretish import expressions as e
 from fretish.bindings.constants import called, computed, quantity, whole_exponent
+from fretish.classes.frozen import dataclass
 from fretish.expressions import MIRRORED
 from fretish.units import ONE, Unit
 

@@ -7,7 +7,7 @@ nanoseconds.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +25,7 @@ from fretc.logs.signals.propositions import (
 from fretc.logs.signals.samples import Recording, Times
 from fretish.bindings.declarations import Declarations, Proposition
 from fretish.bindings.expressions import ticks_back
+from fretish.classes.frozen import dataclass
 
 Places = NDArray[np.intp]
 """The index of the event in force at each point; -1: there is none yet."""

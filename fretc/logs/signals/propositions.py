@@ -7,7 +7,7 @@ others decide. Times are nanoseconds.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from functools import reduce
 from types import MappingProxyType
@@ -20,6 +20,7 @@ from fretc.logs.signals.samples import Recording, Samples, Times, Values, distin
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Proposition, Signal
 from fretish.bindings.expressions import ticks_back
+from fretish.classes.frozen import dataclass
 from fretish.reading.caching import cache_by_identity
 
 States = NDArray[np.int8]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from fractions import Fraction
 from math import inf
 from typing import Any, TypeVar
@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fretc.logs.signals.integrity import EVERYTHING, Checked
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 
 Times = NDArray[np.int64]

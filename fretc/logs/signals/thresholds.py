@@ -6,13 +6,13 @@ Numbers are in the base unit of their dimension.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from math import isfinite
 
 from fretc.logs.signals.measures import NameValues, number
 from fretish import expressions as e
 from fretish.bindings.declarations import Proposition, Signal
 from fretish.bindings.expressions import dimension, ticks_back
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source
 from fretish.expressions import MIRRORED, Order

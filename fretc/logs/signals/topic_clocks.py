@@ -6,12 +6,11 @@ bindings declare. All times are nanoseconds and stand in the order of the file.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
 from fretc.logs.signals.samples import Late, Times
+from fretish.classes.frozen import dataclass
 
 JUMP = 10**9
 """A step of more than this between two messages means that a clock was set: no message is so late.

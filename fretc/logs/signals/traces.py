@@ -6,7 +6,6 @@ Times are nanoseconds. None is unknown: neither true nor false.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +22,7 @@ from fretc.logs.signals.propositions import (
 )
 from fretc.logs.signals.samples import Late, Recording, Times
 from fretish.bindings.declarations import Aggregate, Declarations, Proposition
+from fretish.classes.frozen import dataclass
 from monitors import ticking
 from monitors.kernel import Column
 

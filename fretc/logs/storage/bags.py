@@ -11,7 +11,6 @@ import bz2
 import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -25,6 +24,7 @@ from fretc.logs.mcap.messages import Sink
 from fretc.logs.messages.ros2_types import standard
 from fretc.logs.signals.samples import Gap
 from fretc.logs.storage import storage_diagnostics
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.extras import missing_extra
 from fretish.diagnostics.source import Span

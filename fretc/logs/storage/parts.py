@@ -6,7 +6,7 @@ Times are nanoseconds, log times.
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 from fretc.logs.mcap.container import ChannelDefinition
 from fretc.logs.mcap.damage import Damage
@@ -14,6 +14,7 @@ from fretc.logs.mcap.messages import Messages, Sink
 from fretc.logs.mcap.metadata import Described
 from fretc.logs.signals.integrity import EVERYTHING, Checked
 from fretc.logs.signals.samples import Gap
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass
 from urllib.parse import unquote, urlsplit
 
 from fretc.logs.storage.log_names import is_url
+from fretish.classes.frozen import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,7 @@ lane are counted; none of them is worse than a run with a lane.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from math import inf
 from types import MappingProxyType
 
@@ -16,6 +16,7 @@ from fretc.report.model import phrases
 from fretc.report.model.marks import Mark
 from fretc.report.model.pictures import LaneMark, Lanes, RunLane, WordLane
 from fretc.report.model.results import ResultRow
+from fretish.classes.frozen import dataclass
 
 NO_COURSES: Mapping[str, int] = MappingProxyType({})
 MOST_LANES = 40

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 from math import dist
 
-from fretc.audit.evidence.run_plot_data import position_at
 from fretc.audit.evidence.schema import Result, RobotPath
 from fretc.report.model import phrases
 from fretc.report.model.pictures import PlaceMark, RunMap
 from fretc.report.model.results import ResultRow
+from fretish.classes.frozen import dataclass
 
 MOST_MAPS = 8
 _NEAR = 0.02
@@ -59,8 +59,11 @@ def extent(points: Iterable[tuple[float, float]]) -> float:
 
 
 def _marks(one: MapResult, way: RobotPath) -> Iterable[PlaceMark]:
-    violations = one.result.violations if one.result else ()
-    for number, violation in enumerate(violations, 1):
+    if one.result is None or not one.result.violations:
+        return
+    from fretc.audit.evidence.run_plot_data import position_at
+
+    for number, violation in enumerate(one.result.violations, 1):
         at = position_at(way, violation.start_ns)
         if at is not None:
             yield PlaceMark(

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Callable
-from dataclasses import dataclass
 
 from fretc.audit.evidence.result_summaries import audited_s, undecided_ticks
 from fretc.audit.evidence.schema import Result
+from fretish.classes.frozen import dataclass
 
 Span = tuple[float, float]
 """Start and end, in seconds from the first tick of a run."""

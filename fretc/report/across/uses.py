@@ -10,7 +10,6 @@ counted.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from math import inf, isfinite
 
 from fretc.audit.evidence.samples import number
@@ -19,6 +18,7 @@ from fretc.report.model import phrases
 from fretc.report.model.pictures import Use, UseRow, Uses
 from fretc.report.model.results import ResultRow
 from fretish.bindings.amounts import exact
+from fretish.classes.frozen import dataclass
 from monitors import kernel
 
 _LETTERS = "abcdefgh"

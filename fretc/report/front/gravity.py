@@ -8,9 +8,9 @@ its requirement is named first, never last.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 
 from fretc.report.model.views import HazardRequirement, HazardView
+from fretish.classes.frozen import dataclass
 from fretish.reading.natural_order import natural
 
 _RANKS = {

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
 
@@ -35,6 +34,7 @@ from fretc.traceability.lock import Lock, ReviewedRequirement, standings
 from fretc.traceability.waivers import Waiver
 from fretc.verification.reader import Proofs
 from fretish.bindings.declarations import Declarations
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.documents import RequirementEntry
 from monitors import kernel

@@ -9,25 +9,23 @@ tick, and for signals of unknown age.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from fractions import Fraction
 from functools import partial
 from math import inf, isfinite, isnan
 from typing import Protocol, TypeVar, assert_never
 
-import numpy as np
-
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import atom, variable
 from fretc.audit.evidence.schema import Result, Violation
 from fretc.audit.measurements.intervals import end_s, interval_words
-from fretc.logs.signals.measures import ExpressionError, Measure, NameValues, term
 from fretc.report.model import phrases
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.bindings.amounts import shared_unit
 from fretish.bindings.declarations import Aggregate, Declarations, Proposition, Signal
 from fretish.bindings.expressions import ticks_back
+from fretish.classes.frozen import dataclass
 from fretish.printer import expression
 from fretish.units import base_name, unit
 
@@ -346,6 +344,10 @@ class _ViolationTick:
 
     def number(self, tree: e.Expression) -> float | None:
         """The number in base units; None if it is not a number, or unknown."""
+        import numpy as np
+
+        from fretc.logs.signals.measures import ExpressionError, Measure, NameValues, term
+
         names = {name.id for name in e.names(tree)}
         values = {name: self.value(name) for name in names}
         numbers = {n: v for n, v in values.items() if isinstance(v, float | int)}

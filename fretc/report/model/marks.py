@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import lru_cache
 
 from fretc.audit.evidence.verdicts import SUSPECT, VERDICTS, severity, shows
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.status_symbols import StatusSymbol
 
 

@@ -6,9 +6,8 @@ from the first tick of a run. Texts describe the pictures.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from fretc.report.model.marks import Mark
+from fretish.classes.frozen import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from fretc.report.model.marks import Mark
 from fretc.report.model.pictures import Timeline
+from fretish.classes.frozen import dataclass
 
 
 @dataclass(frozen=True, slots=True)

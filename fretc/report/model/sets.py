@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from fretc.report.model.marks import Mark
+from fretish.classes.frozen import dataclass
 
 REALIZABLE, UNREALIZABLE = "can be satisfied together", "cannot be satisfied together"
 

@@ -7,7 +7,6 @@ are seconds from the first tick of a run, ticks count from 0, intervals include 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 
 from fretc.report.model.changes import ChangeGroup, RequirementChanges
 from fretc.report.model.front import Front
@@ -16,6 +15,7 @@ from fretc.report.model.pictures import Across, Histogram
 from fretc.report.model.results import ProbabilityView, ResultRow
 from fretc.report.model.sets import SetAnalysis
 from fretc.traceability.artefacts import Product
+from fretish.classes.frozen import dataclass
 from fretish.documents import named
 
 SCHEMA = "fretc-report-1"

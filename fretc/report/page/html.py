@@ -5,7 +5,7 @@ from __future__ import annotations
 import base64
 import hashlib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import fields, is_dataclass
 from typing import Any
 
 from compiler.explanation.diagram import diagram
@@ -26,6 +26,7 @@ from fretc.report.pictures.plots import drawing, histogram, probability
 from fretc.report.sections.argument import argument
 from fretc.report.sections.details import Details
 from fretc.report.set_analysis.drawing import drawing as play_drawing
+from fretish.classes.frozen import dataclass
 
 _MOST_CHANGES, _MOST_RUNS = 100, 20
 """Maximum listed changes, and maximum listed runs with a changed verdict per requirement."""

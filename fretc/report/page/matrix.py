@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import groupby
 
 from fretc.audit.evidence.verdicts import BROKEN, RETIRED
@@ -17,6 +16,7 @@ from fretc.report.model.front import ColumnRun, RunGroup
 from fretc.report.model.marks import Mark
 from fretc.report.model.views import HazardRequirement, ReportView, RequirementView
 from fretc.report.sections.matrix import FACTS
+from fretish.classes.frozen import dataclass
 
 MOST = 10_000
 """Maximum number of cells of a full matrix."""

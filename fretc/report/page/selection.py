@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import islice, zip_longest
 
 from fretc.audit.evidence.verdicts import SUSPECT
@@ -16,6 +16,7 @@ from fretc.report.model.pictures import Timeline
 from fretc.report.model.results import ResultRow, ResultView
 from fretc.report.model.views import ReportView, RequirementView, RunSummary, RunView
 from fretc.report.sections.details import Details
+from fretish.classes.frozen import dataclass
 
 COMPACT = 1_000
 """Above this number of results, only runs that are not satisfied have a row."""

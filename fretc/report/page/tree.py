@@ -11,11 +11,12 @@ extension.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import StrEnum
 from typing import Any
 
 from fretc.report.sections.argument import Element, ElementKind
+from fretish.classes.frozen import dataclass
 
 MOST = 120
 """Maximum elements of a drawing; a larger argument is drawn without supported goals."""

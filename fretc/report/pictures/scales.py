@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from fretc.report.model.phrases import decimal
 from fretc.report.model.pictures import WordLane
+from fretish.classes.frozen import dataclass
 
 WIDTH, RIGHT = 720, 30
 """The width of a picture, and the margin to the right of its axis."""

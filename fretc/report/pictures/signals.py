@@ -13,7 +13,6 @@ from typing import TypeVar
 from compiler.formalization.formalized import FormalizedRequirement
 from fretc.audit.evidence.samples import SignalSamples
 from fretc.audit.evidence.schema import Result, ThresholdRecord, Violation
-from fretc.audit.measurements.violations import EVEN_SAMPLES
 from fretc.report.model.pictures import Panel, SignalPiece, SpanMark, ThresholdLine, WordLane
 from fretish import expressions as e
 from fretish.bindings.amounts import exact, exact_duration
@@ -203,6 +202,8 @@ def _stretches(
 
 def _longest(samples: SignalSamples[T], age: float) -> float:
     """How long a sample holds; thinned samples hold longer, to bridge what thinning removed."""
+    from fretc.audit.measurements.violations import EVEN_SAMPLES
+
     if len(samples.times) < EVEN_SAMPLES:
         return age
     usual = median(late - early for early, late in pairwise(samples.times))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import floor, log10
 from types import MappingProxyType
 
@@ -15,6 +15,7 @@ from fretc.report.model.phrases import duration, joined, seconds, times, value
 from fretc.report.model.pictures import Lane, NamedInstant, Panel, SpanMark, Timeline, WordLane
 from fretc.report.pictures.first_tick import reading
 from fretc.report.pictures.signals import left_out, panels, persistences, word_lanes
+from fretish.classes.frozen import dataclass
 
 DETAIL = 400
 """Marks nearer than 1/400 of the picture are merged, which bounds their number."""

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 from types import MappingProxyType
 
@@ -22,6 +21,7 @@ from fretc.report.model import phrases
 from fretc.report.model.results import ResultRow
 from fretc.report.model.views import ProofView, ReportView, RequirementView
 from fretc.report.sections.proofs import SHARED, covering, is_proved
+from fretish.classes.frozen import dataclass
 
 
 class ElementKind(StrEnum):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from typing import Any
 
 from compiler.project.project import Project
@@ -22,6 +22,7 @@ from fretc.report.model.views import RunSummary, RunView
 from fretc.report.pictures.histograms import histograms
 from fretc.report.sections.results import result_view
 from fretc.report.sections.runs import AuditedFile, RunKey, run_key, topic_views
+from fretish.classes.frozen import dataclass
 
 Latencies = Mapping[int, Sequence[float]]
 Thresholds = Mapping[int, Sequence[ThresholdRecord]]

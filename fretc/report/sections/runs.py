@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from dataclasses import replace as changed
 from functools import cached_property
 from itertools import takewhile
@@ -23,6 +22,7 @@ from fretc.report.model import phrases
 from fretc.report.model.marks import sign_mark
 from fretc.report.model.views import Remark, RequirementView, RunSummary, TopicView
 from fretc.traceability.acceptances import as_diagnostic
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics import status_symbols as signs
 from fretish.diagnostics.diagnostic import Severity
 from monitors import kernel

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from compiler.explanation.reasons import why
@@ -14,6 +13,7 @@ from fretc.analysis.arena.variables import UnsupportedError
 from fretc.testing.exports.tables import Cell
 from fretc.testing.words import RunColumns, letters
 from fretish.bindings.declarations import Role
+from fretish.classes.frozen import dataclass
 from monitors.kernel.tables import InputError
 from monitors.kernel.variables import Variable
 from monitors.kernel.verdicts import VIOLATED

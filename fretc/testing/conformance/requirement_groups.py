@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 
 from compiler.formalization.formalized import FormalizedRequirement
@@ -33,6 +32,7 @@ from fretc.testing.requirement_model import demands
 from fretc.testing.search import Letter, nearest
 from fretc.testing.suite import Polarity
 from fretish.bindings.declarations import Role
+from fretish.classes.frozen import dataclass
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -8,9 +8,9 @@ Simplifying and isolating failure-inducing input, TSE 28 (2002).
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 
 from fretc.testing.conformance.oracle import ProgramTrace, Tick
+from fretish.classes.frozen import dataclass
 
 MOST = 400
 """Maximum number of runs for one failure."""

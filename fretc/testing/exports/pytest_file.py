@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import PurePosixPath
 
@@ -17,6 +16,7 @@ from compiler.targets.python import monitor as python
 from compiler.targets.target import Target
 from fretc.testing.exports.tables import TestTable, table, truths
 from fretc.testing.suite import Test
+from fretish.classes.frozen import dataclass
 from monitors.kernel.verdicts import Verdict
 
 

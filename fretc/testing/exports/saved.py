@@ -9,7 +9,6 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from compiler.files.records import replace
@@ -20,6 +19,7 @@ from compiler.targets.python.input_adapter import input_adapter
 from fretc.testing.exports.tables import TestTable, table, truths
 from fretc.testing.suite import LONGEST_NAME, Suite, Test
 from fretc.testing.words import outcome
+from fretish.classes.frozen import dataclass
 from monitors.kernel import Monitor
 from monitors.loading import load
 

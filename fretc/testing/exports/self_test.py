@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import Any
 
@@ -14,6 +13,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.c.monitor import Interface, interface
 from fretc.testing.exports.tables import Cell, truths
 from fretc.testing.suite import Test
+from fretish.classes.frozen import dataclass
 from monitors.kernel.verdicts import Verdict
 
 NAME = PurePosixPath("fretc_self_test.c")

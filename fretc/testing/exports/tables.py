@@ -5,13 +5,13 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from itertools import groupby
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.python.input_adapter import input_adapter
 from fretc.analysis.arena.alphabet import Value
 from fretc.testing.suite import Test
+from fretish.classes.frozen import dataclass
 
 Cell = Value | None
 Row = tuple[int, tuple[Cell, ...]]

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 from itertools import pairwise
@@ -20,6 +19,7 @@ from fretc.logs.signals.signals import clearance, sample
 from fretc.testing.log_synthesis.messages import Content, SignalField, message
 from fretish import expressions as e
 from fretish.bindings.declarations import Reading, Reduce, Signal
+from fretish.classes.frozen import dataclass
 from fretish.units import unit
 
 _MOST_NUMBERS = 4

@@ -5,7 +5,6 @@ from __future__ import annotations
 import shutil
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Literal
@@ -17,6 +16,7 @@ from fretc.audit.plan import Plan, planned
 from fretc.testing.log_synthesis.messages import NotRecordableError
 from fretc.testing.log_synthesis.synthetic_log import EPOCH, SyntheticLog, synthesize
 from fretc.testing.suite import Test
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from monitors.kernel import Monitor
 from monitors.kernel.verdicts import INCONCLUSIVE, Verdict

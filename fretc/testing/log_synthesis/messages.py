@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from rosbags.interfaces import Nodetype
 
 from fretish.bindings.declarations import Path, Signal, short_type
+from fretish.classes.frozen import dataclass
 from simulation.nodes.messages import TYPES
 
 Content = float | str | Sequence[float]

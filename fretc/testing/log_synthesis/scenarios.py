@@ -13,7 +13,7 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import asdict, field, fields, replace
 from functools import partial
 from pathlib import Path
 from random import Random
@@ -30,6 +30,7 @@ from fretc.audit.pool import WorkerDied, map_processes
 from fretc.campaigns.campaign import recorded
 from fretc.testing.log_synthesis.variation import varied
 from fretc.testing.suite import GoalResult, GoalStatus, Polarity, Suite
+from fretish.classes.frozen import dataclass
 from simulation.recording import TOPICS
 from simulation.world.scenario import Expectations, Scenario, load, names
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -23,6 +22,7 @@ from fretc.testing.log_synthesis.messages import (
 from fretc.testing.log_synthesis.ticks import TickPart, TickPlan, part, tick_plan
 from fretc.testing.suite import Test
 from fretish.bindings.declarations import Declarations, Path, Signal
+from fretish.classes.frozen import dataclass
 from monitors.kernel import Monitor
 
 EPOCH = 1_700_000_000 * 10**9

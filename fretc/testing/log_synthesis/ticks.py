@@ -7,7 +7,6 @@ Then the log has additional ticks at its start, which do not change the verdict.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import product
 
 from fretc.testing.log_synthesis.messages import NotRecordableError
@@ -15,6 +14,7 @@ from fretc.testing.suite import Test
 from fretish import expressions as e
 from fretish.bindings.declarations import Proposition
 from fretish.bindings.expressions import ticks_back
+from fretish.classes.frozen import dataclass
 from monitors.kernel import Monitor
 from monitors.kernel.verdicts import Truth
 

@@ -7,11 +7,11 @@ has no call, loop, pointer or address, so a step depends on nothing else.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import ClassVar
 
 from fretc.verification.compiled.text import NAME, NUMBER, Fields, Tokens, strange
+from fretish.classes.frozen import dataclass
 
 _JOINS = ("&", "|")
 """Operators that need a left operand; without one they take an address or begin a function."""

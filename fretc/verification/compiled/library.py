@@ -13,7 +13,6 @@ import struct
 import sys
 from collections.abc import Hashable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -24,6 +23,7 @@ from fretc.verification.compiled.readings import VERDICTS, RailReading, judged
 from fretc.verification.compiled.tools import Binary, ToolError
 from fretc.verification.monitor.equivalence import Judgement
 from fretc.verification.monitor.rails import Letter
+from fretish.classes.frozen import dataclass
 from monitors.kernel.verdicts import Truth
 
 _OUTCOME = struct.Struct("@i7Bxi7BxIBB2x")

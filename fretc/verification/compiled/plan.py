@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
@@ -16,6 +15,7 @@ from fretc.verification.compiled.text import UnexpectedLayoutError
 from fretc.verification.monitor.equivalence import Machine
 from fretc.verification.monitor.rails import Letter, Stepping
 from fretc.verification.monitor.verifying import NotAMonitorError
+from fretish.classes.frozen import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from fretc.verification.engines.programs import MEMORY, STARTED, run
+from fretish.classes.frozen import dataclass
 
 _SECONDS = 60.0
 

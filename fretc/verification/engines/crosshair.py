@@ -11,7 +11,6 @@ import ast
 import re
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -19,6 +18,7 @@ from tempfile import TemporaryDirectory
 from compiler.files.text_files import sha256
 from compiler.logic.claims import ClaimOutcome, Layer, Proof, not_checked, proof, proved, refuted
 from fretc.verification.engines.programs import MEMORY, STARTED, Completion, run
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.extras import install_help
 
 CROSSHAIR_SECONDS = 60.0

@@ -13,13 +13,13 @@ import csv
 import re
 import shutil
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from compiler.logic.claims import ClaimOutcome, not_checked, proved
 from fretc.verification.engines.programs import STARTED, Completion, run
 from fretc.verification.engines.sandbox import CallLimits
+from fretish.classes.frozen import dataclass
 
 NAME = "Frama-C"
 MACHINES = ("x86_16", "x86_64")

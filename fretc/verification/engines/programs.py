@@ -5,10 +5,10 @@ from __future__ import annotations
 import os
 import subprocess
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from compiler.files.processes import isolate_imports
+from fretish.classes.frozen import dataclass
 from fretish.system.processes import OWN_GROUP, kill_all
 
 _MOST_OUTPUT = 32 * 2**20

@@ -12,7 +12,6 @@ import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from multiprocessing.context import SpawnProcess
 from multiprocessing.resource_tracker import ensure_running
@@ -20,6 +19,7 @@ from types import ModuleType
 from typing import Any, ParamSpec, TypeVar
 
 from compiler.files.processes import isolate_imports, reply
+from fretish.classes.frozen import dataclass
 from fretish.system.processes import ignore_interrupts, stops_blocked, was_killed
 from fretish.system.resources import OUT_OF_MEMORY, ProcessLimits, exceeded_time
 

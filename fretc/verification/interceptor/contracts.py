@@ -10,7 +10,6 @@ shows a violation.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 
 from compiler.files.text_files import sha256
 from compiler.logic.claims import (
@@ -33,6 +32,7 @@ from fretc.verification.interceptor.incoming import (
     ContractStep,
     stands,
 )
+from fretish.classes.frozen import dataclass
 from monitors.interceptor import Options
 
 MOST_STATES = 200_000

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from fretc.verification.interceptor.incoming import (
@@ -24,6 +23,7 @@ from fretc.verification.interceptor.incoming import (
 )
 from fretc.verification.interceptor.machine import CheckedCore, NotAnInterceptorError
 from fretc.verification.interceptor.opaque import InspectedError, Opaque, is_opaque
+from fretish.classes.frozen import dataclass
 from monitors.interceptor import Options
 
 Key = tuple[object, ...]

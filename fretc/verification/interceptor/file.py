@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 from types import ModuleType
 from typing import Any
@@ -19,6 +19,7 @@ from compiler.targets.python.interceptor import MARKER
 from fretc.verification.interceptor.purity import bound_names, is_guarded
 from fretc.verification.monitor.statements import UnexpectedStatementError
 from fretish.bindings.declarations import Interception, InterceptorForm
+from fretish.classes.frozen import dataclass
 from fretish.reading.text_encoding import is_utf8
 from monitors.loading import executed
 from monitors.source_text import interceptor as original

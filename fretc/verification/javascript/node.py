@@ -13,7 +13,7 @@ import os
 import subprocess
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import product
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -24,6 +24,7 @@ from fretc.verification.compiled.readings import RailReading, judged
 from fretc.verification.compiled.tools import ToolError
 from fretc.verification.monitor.equivalence import Judgement
 from fretc.verification.monitor.rails import Letter
+from fretish.classes.frozen import dataclass
 from fretish.system.resources import exceeded_time
 from monitors.kernel.verdicts import Truth
 

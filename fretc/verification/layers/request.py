@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import dataclass
 from pathlib import PurePath
 
 from compiler.files.text_files import sha256
@@ -14,6 +13,7 @@ from compiler.targets.python import interceptor, monitor
 from compiler.targets.target import stem
 from fretc.verification.engines.sandbox import CallLimits
 from fretc.verification.loop.closed_loop import NamedText, Setup
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.source import Source
 from fretish.documents import RequirementEntry
 

@@ -6,11 +6,11 @@ The module of a row is imported on demand, so that help is quick.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from importlib import import_module
 from typing import TYPE_CHECKING, cast
 
 from compiler.logic.claims import Layer
+from fretish.classes.frozen import dataclass
 
 if TYPE_CHECKING:
     from compiler.formalization.formalized import FormalizedRequirement

@@ -11,13 +11,13 @@ the relation.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import product
 from typing import Any, NamedTuple, Protocol
 
 from compiler.logic.kripke import ModelTooLargeError
 from fretc.verification.loop.actuation_model import ActuationAssumptions, Queue
 from fretc.verification.loop.model import Loop, LoopTick, Node
+from fretish.classes.frozen import dataclass
 
 NONE, ARRIVED = -1, -2
 """Values in place of the age of a request: none is in flight; one has arrived."""

@@ -7,9 +7,9 @@ which computes each transition from one tick to the next once.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from fretc.verification.interceptor.machine import Event, InterceptorMachine, State
+from fretish.classes.frozen import dataclass
 
 Queue = tuple[tuple[bool, int], ...]
 """Stop messages in flight, the oldest first: the request, and cells since it was sent."""

@@ -12,7 +12,7 @@ Source: Manna, Pnueli, Temporal verification of reactive systems: safety, 1995, 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from compiler.formalization.formalize import formalize
@@ -49,6 +49,7 @@ from fretc.verification.loop.invariant import unproved
 from fretc.verification.loop.search import Case, NotALoopError, Parts, as_table, reach
 from fretc.verification.monitor.statements import is_same
 from fretish import syntax as s
+from fretish.classes.frozen import dataclass
 from fretish.clock import in_words
 from fretish.diagnostics.source import Source
 from fretish.documents import RequirementEntry

@@ -8,7 +8,6 @@ between them is `fretc.verification.loop.model`, and its durations are whole cel
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from math import gcd
 from typing import TypeVar
 
@@ -32,6 +31,7 @@ from fretish.bindings.declarations import (
     Planner,
     Requests,
 )
+from fretish.classes.frozen import dataclass
 from fretish.clock import in_words
 from fretish.expressions import names
 

@@ -21,7 +21,6 @@ cells. One ring at any place in each cell models a timer of the same period, at 
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator
-from dataclasses import dataclass
 from itertools import product
 from typing import NamedTuple
 
@@ -30,6 +29,7 @@ from compiler.logic.orders import Exclusion, only_possible
 from fretc.verification.interceptor.machine import Event
 from fretc.verification.loop.actuation_model import ActuationModel, ActuationState, Word
 from fretc.verification.monitor.machine import Stepped
+from fretish.classes.frozen import dataclass
 
 
 class Node(NamedTuple):

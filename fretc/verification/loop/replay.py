@@ -7,12 +7,12 @@ states, and the interceptor without encoded states.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from compiler.logic.claims import ClaimTrace
 from fretc.verification.interceptor.machine import Event, InterceptorMachine
 from fretc.verification.loop.model import Loop, LoopTick, Node
+from fretish.classes.frozen import dataclass
 from monitors.kernel import Monitor
 from monitors.kernel.verdicts import VIOLATED, Truth
 from monitors.loading import load

@@ -8,7 +8,6 @@ result contains it.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import assert_never
 
@@ -23,6 +22,7 @@ from fretc.verification.loop.model import Environment, Loop, LoopTick, Node
 from fretc.verification.loop.replay import LoadedMonitor, moments, replayed
 from fretc.verification.monitor.machine import Stepped
 from fretc.verification.monitor.text_check import strange
+from fretish.classes.frozen import dataclass
 from monitors.interceptor import Options
 from monitors.loading import load
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 import ast
 import random
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import lru_cache
 from typing import Any
 
@@ -20,6 +20,7 @@ from compiler.formalization.letters import impossible_combinations
 from compiler.logic.orders import Exclusion
 from compiler.program.program import SIGNALS
 from fretc.verification.monitor.text_check import own
+from fretish.classes.frozen import dataclass
 from monitors.kernel import Column, Monitor
 from monitors.kernel.columns import column, truths
 from monitors.kernel.stepping import literals_of

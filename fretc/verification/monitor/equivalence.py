@@ -9,7 +9,7 @@ for testing equivalence of finite automata, Cornell TR 71-114 (1971).
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Protocol, TypeVar
 
 from compiler.formalization.letters import (
@@ -28,6 +28,7 @@ from compiler.formalization.reference import (
 )
 from compiler.logic.orders import Exclusion, only_possible
 from fretish import syntax as s
+from fretish.classes.frozen import dataclass
 
 V = TypeVar("V")
 Judgement = tuple[str, bool]

@@ -10,7 +10,7 @@ from __future__ import annotations
 import ast
 import random
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from fractions import Fraction
 from math import inf, nan, nextafter
 from typing import Any
@@ -18,6 +18,7 @@ from typing import Any
 from fretc.verification.monitor.front_layout import declared_variables
 from fretc.verification.monitor.statements import UnexpectedStatementError
 from fretc.verification.monitor.text_check import own
+from fretish.classes.frozen import dataclass
 from monitors.kernel import Monitor
 from monitors.kernel.readings import exact
 from monitors.kernel.variables import Value, Variable

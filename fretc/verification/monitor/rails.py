@@ -9,7 +9,6 @@ and all marks are compared.
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
-from dataclasses import dataclass
 from itertools import product
 from typing import Any, Protocol
 
@@ -17,6 +16,7 @@ from compiler.logic.orders import Exclusion, only_possible
 from compiler.program.program import MARKS, SIGNALS
 from fretc.verification.monitor.equivalence import Classes, Pairs, Visited, word
 from fretc.verification.monitor.machine import RailState
+from fretish.classes.frozen import dataclass
 from monitors.kernel import Monitor
 from monitors.kernel.verdicts import Truth
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Hashable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from functools import lru_cache
 
 from compiler.formalization.letters import Valuation
@@ -16,6 +15,7 @@ from compiler.program.program import MARKS
 from fretc.verification.monitor.equivalence import Judgement
 from fretc.verification.monitor.machine import Stepped
 from fretc.verification.monitor.text_check import own
+from fretish.classes.frozen import dataclass
 
 _Given = Mapping[str, frozenset[str]]
 """Name → names on which it depends."""

@@ -9,7 +9,6 @@ from __future__ import annotations
 import ast
 import copy
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 from compiler.program.program import MARKS, SIGNALS
 from compiler.targets.python.program import negation
@@ -20,6 +19,7 @@ from fretc.verification.monitor.statements import (
     normal,
     require,
 )
+from fretish.classes.frozen import dataclass
 
 FIXED = frozenset(
     "self rail rows known doubt tick boolean VIOLATED SATISFIED PENDING".split(),

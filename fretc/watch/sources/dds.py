@@ -10,7 +10,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from fretc.logs.messages import ros2_types
 from fretc.watch.sources.dds_domain import DdsPublisher, DdsWriter, Domain, Reader, join
@@ -18,6 +18,7 @@ from fretc.watch.sources.dds_types import Offer, UnreadableTypeError
 from fretc.watch.sources.mailbox import WAIT, Mailbox
 from fretc.watch.sources.middleware import Middleware, several_publishers
 from fretc.watch.sources.source import Channel, Problem, Reconnected
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from monitors.stop_supervisor import Status

@@ -8,7 +8,6 @@ from __future__ import annotations
 import ctypes
 import os
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any
 
 from fretc.logs.messages.ros2_types import definitions
@@ -21,6 +20,7 @@ from fretc.watch.sources.dds_types import (
     payloads_of,
     ros_topic,
 )
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.extras import install_help
 from fretish.diagnostics.messages import diagnostic

@@ -7,11 +7,11 @@ created from untrusted type information: Cyclone DDS's Python would execute the 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
 from fretc.logs.messages import definitions as ros
+from fretish.classes.frozen import dataclass
 
 _TYPE = re.compile(r"(\w+)::(\w+)::dds_::(\w+)_", re.ASCII)
 _NAME = re.compile(r"[A-Za-z]\w{0,99}((::|/)[A-Za-z]\w{0,99}){0,9}", re.ASCII)

@@ -11,7 +11,7 @@ import re
 import socket
 import time
 from contextlib import closing
-from dataclasses import dataclass, field
+from dataclasses import field
 from ssl import SSLCertVerificationError, SSLError
 from threading import Event as Flag
 from typing import TYPE_CHECKING, assert_never
@@ -34,6 +34,7 @@ from fretc.watch.sources.foxglove_protocol import (
 )
 from fretc.watch.sources.middleware import Middleware
 from fretc.watch.sources.source import Channel
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.extras import install_help
 from fretish.diagnostics.messages import diagnostic

@@ -13,12 +13,12 @@ import json
 import struct
 from base64 import b64decode
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
 from urllib.parse import SplitResult, urlsplit
 
 from compiler.files.checked_json import JsonValue, SchemaError
 from compiler.files.checked_json import plain as json_value
 from fretc.watch.sources.source import Channel
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 

@@ -7,9 +7,9 @@ the watch decodes them as an audit of the recording does. Times are nanoseconds.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from monitors.stop_supervisor import Status
 

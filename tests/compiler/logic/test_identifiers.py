@@ -33,7 +33,7 @@ def test_reserved_words_and_what_begins_with_no_letter_are_changed() -> None:
 
 
 def test_a_name_of_a_reserved_family_begins_in_another_way() -> None:
-    family = ReservedWords(frozenset(), re.compile(r"fretc_\w+|int\d*"))
+    family = ReservedWords(frozenset(), r"fretc_\w+|int\d*")
     assert legal_names(["fretc_truth", "int", "v_fretc_truth"], family) == {
         "fretc_truth": "v_fretc_truth_2",
         "int": "int_2",

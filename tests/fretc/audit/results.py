@@ -18,8 +18,8 @@ from fretc.audit.evidence.schema import (
     Violation,
 )
 from fretc.audit.evidence.writer import unjudged_result
+from fretc.audit.measurements.intervals import Moment
 from fretc.audit.measurements.tallies import PropositionTally
-from fretc.audit.measurements.violations import Moment
 
 SHA = "0" * 64
 HEALTH = Health(True, 1000, None, (), (), {})

@@ -12,7 +12,7 @@ import pytest
 from fretish.diagnostics import messages as module
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.fixes import Fix
-from fretish.diagnostics.messages import Message, code_tables, diagnostic, messages
+from fretish.diagnostics.messages import KINDS, Message, code_tables, diagnostic, message, messages
 from fretish.diagnostics.source import Source
 
 ROOT = Path(__file__).parents[3]
@@ -65,17 +65,16 @@ def placeholders(message: Message) -> set[str]:
 
 def test_each_use_names_a_message_and_gives_exactly_its_placeholders() -> None:
     for place, name, keywords in uses():
-        assert name in messages(), f"{place}: {name}"
-        assert keywords - ARGUMENTS == placeholders(messages()[name]), f"{place}: {name}"
+        assert keywords - ARGUMENTS == placeholders(message(name)), f"{place}: {name}"
 
 
 def test_a_help_text_is_in_the_table_or_in_the_code() -> None:
     for place, name, keywords in uses():
-        assert not ("help" in keywords and messages()[name].help), f"{place}: {name}"
+        assert not ("help" in keywords and message(name).help), f"{place}: {name}"
 
 
 def test_each_message_is_used() -> None:
-    assert set(messages()) == {name for _, name, _ in uses()}
+    assert {name for kind in KINDS for name in messages(kind)} == {name for _, name, _ in uses()}
 
 
 def test_each_name_is_unique_and_plain() -> None:
@@ -84,7 +83,7 @@ def test_each_name_is_unique_and_plain() -> None:
     assert len(every) == len(set(every))
     for name in every:
         assert re.fullmatch(r"[a-z][a-z0-9]*(_[a-z0-9]+){0,4}", name), name
-        assert not placeholders(messages()[name]) & ARGUMENTS, name
+        assert not placeholders(message(name)) & ARGUMENTS, name
 
 
 def test_each_row_has_known_fields_and_a_text_in_one_line() -> None:
@@ -97,7 +96,7 @@ def test_each_row_has_known_fields_and_a_text_in_one_line() -> None:
 def test_values_are_inserted_as_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
     """Braces in what a user wrote mean nothing; doubled ones in the table mean one."""
     text = Message(Code.NO_TOPIC, "no `{topic}`", "`values = {{ {word} = 0 }}`", Severity.WARNING)
-    monkeypatch.setattr(module, "messages", lambda: {"no_topic": text})
+    monkeypatch.setattr(module, "message", {"no_topic": text}.__getitem__)
     place = Source("b.toml", "x").span()
     assert diagnostic("no_topic", place, topic="/{word}{0}{{", word="{topic}") == Diagnostic(
         Code.NO_TOPIC,
@@ -114,7 +113,7 @@ def test_values_are_inserted_as_they_are(monkeypatch: pytest.MonkeyPatch) -> Non
 
 
 def test_a_message_without_help_has_none(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "messages", lambda: {"empty": Message(Code.EMPTY_LOG, "empty")})
+    monkeypatch.setattr(module, "message", lambda _: Message(Code.EMPTY_LOG, "empty"))
     assert diagnostic("empty") == Diagnostic(Code.EMPTY_LOG, "empty")
 
 
@@ -123,10 +122,16 @@ def test_without_a_help_text_the_help_is_that_of_the_fix(monkeypatch: pytest.Mon
         "empty": Message(Code.EMPTY_LOG, "empty"),
         "helped": Message(Code.EMPTY_LOG, "empty", "fill it"),
     }
-    monkeypatch.setattr(module, "messages", lambda: rows)
+    monkeypatch.setattr(module, "message", rows.__getitem__)
     fix = Fix(Source("r.fret", "shal").span(), "shall", is_safe=True)
     assert diagnostic("empty", fix=fix) == Diagnostic(
         Code.EMPTY_LOG, "empty", help="write `shall`", fix=fix
     )
     assert diagnostic("helped", fix=fix).help == "fill it"
     assert diagnostic("empty", fix=fix, help="no").help == "no"
+
+
+def test_a_name_without_a_message_is_an_error() -> None:
+    for name in ("no_such_message", "", "no_topic]\n[F301.messages.no"):
+        with pytest.raises(KeyError):
+            message(name)

@@ -1,5 +1,4 @@
-from fretc.audit.measurements.intervals import end_ns, end_s, interval_words
-from fretc.audit.measurements.violations import Moment
+from fretc.audit.measurements.intervals import Moment, end_ns, end_s, interval_words
 
 FIRST, LAST = Moment(132, 13_200_000_000, 13.2), Moment(134, 13_400_000_000, 13.4)
 

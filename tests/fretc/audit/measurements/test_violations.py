@@ -8,11 +8,11 @@ import pytest
 from compiler.files.records import plain
 from fretc.audit.evidence.writer import as_record
 from fretc.audit.expected_response import demand
+from fretc.audit.measurements.intervals import Moment
 from fretc.audit.measurements.violations import (
     MOST_SAMPLES,
     MOST_WINDOWS,
     DemandText,
-    Moment,
     ViolationInterval,
     violations,
 )
