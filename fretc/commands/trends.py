@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -19,6 +21,9 @@ from fretc.terminal.output import (
 )
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
+
+if TYPE_CHECKING:
+    from fretc.trends.known_requirements import KnownRequirements
 
 
 @click.command()
@@ -46,8 +51,14 @@ from fretish.diagnostics.messages import diagnostic
     help="Address of the report of each round, for links of the page; `{name}` is the name of its "
     "evidence without its ending: --reports '../{name}/report.html'.",
 )
+@path_option(
+    "--requirements",
+    help="Requirements whose titles and time limits the page shows.  [default: requirements, if "
+    "it exists]",
+)
 def trends(
     evidence: tuple[str, ...],
+    requirements: str | None,
     by: str | None,
     level: float,
     output_format: str,
@@ -87,7 +98,8 @@ def trends(
     if html is not None:
         from fretc.trends.page import html as page
 
-        write_outputs({Path(html): page(known, reports)}, evidence)
+        named = _known_requirements(requirements, known.sentences)
+        write_outputs({Path(html): page(known, reports, named)}, evidence)
     if output_format == "json":
         from fretc.trends.json_form import text
 
@@ -101,3 +113,16 @@ def trends(
         print_diagnostics([diagnostic("nothing_to_compare")])
     worse = EXIT_VIOLATION if known.is_worse else None
     raise SystemExit(worse or (EXIT_OK if known.is_comparable else EXIT_INCONCLUSIVE))
+
+
+def _known_requirements(path: str | None, sentences: Mapping[str, str]) -> KnownRequirements:
+    """The titles and limits of the named requirements, or of the default folder if it exists."""
+    from compiler.project.folder import load_folder
+    from fretc.trends.known_requirements import NOTHING_KNOWN, known_requirements
+
+    project = load_folder(path or "requirements")
+    if not isinstance(project, Diagnostic):
+        return known_requirements(project, sentences)
+    if path is not None:
+        fail(project)
+    return NOTHING_KNOWN

@@ -16,7 +16,7 @@ from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
 from fretc.report.across.layout import drawn_lanes, drawn_map, drawn_uses
 from fretc.report.model.changes import RequirementChanges, follows, new_violations
-from fretc.report.model.phrases import joined, visible
+from fretc.report.model.phrases import joined, times, visible
 from fretc.report.model.pictures import Timeline
 from fretc.report.model.sets import SetConflict
 from fretc.report.model.views import ReportView
@@ -66,6 +66,7 @@ def html(
     script, style, sheets = render(_SCRIPT), render(_STYLE), sheet_style(report)
     return render(
         "report/report.html.j2",
+        times=times,
         report=visible_texts(page),
         selection=visible_texts(choice),
         anchors=choice.anchors,
