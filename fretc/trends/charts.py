@@ -270,10 +270,10 @@ def _spread(values: Sequence[Value]) -> Iterator[tuple[float, Value]]:
 def _text(one: VersionComparison, of_round: dict[int, list[Value]], bound: float | None) -> str:
     unit = one.measure.unit
     ends = [
-        f"round {number + 1} {amount(median(v.number for v in of_round[number]), unit)}"
+        f"{amount(median(v.number for v in of_round[number]), unit)} in round {number + 1}"
         for number in dict.fromkeys((min(of_round), max(of_round)))
     ]
-    medians = f"Median of {' and of '.join(ends)}"
+    medians = f"Median {' and '.join(ends)}"
     medians += f"; allowed {amount(bound, unit)}" if bound else ""
     runs = phrases.times(len(one.values), "run")
     if one.finding is ComparisonFinding.REGRESSED:
