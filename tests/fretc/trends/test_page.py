@@ -170,9 +170,17 @@ def test_axe_finds_nothing_serious_and_nothing_is_too_wide(
     visits: Visits, tmp_path: Path, scheme: str, width: int
 ) -> None:
     path = tmp_path / "trends.html"
-    path.write_text(html(nights(HOSTILE)), encoding="utf-8")
+    text = html(nights(HOSTILE), "../{name}/report.html", known(tmp_path, 300))
+    path.write_text(text, encoding="utf-8")
     page = visits.open(path, width, scheme=scheme)
     assert page.title().startswith("Trends: ")
     assert page.evaluate("document.documentElement.scrollWidth") == width
     assert page.locator("svg.strip:visible").count() > 5
+    page.evaluate("document.querySelectorAll('details').forEach(e => e.open = true)")
+    assert page.locator("#numbers figure:visible").count() >= 2
+    assert page.evaluate("document.documentElement.scrollWidth") == width
+    page.locator(".heat td a").last.focus()
+    cell = page.locator(".heat td a").last.bounding_box()
+    assert cell is not None
+    assert 0 <= cell["x"] < width
     assert serious(page) == []
