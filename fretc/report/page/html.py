@@ -22,7 +22,7 @@ from fretc.report.model.sets import SetConflict
 from fretc.report.model.views import ReportView
 from fretc.report.page.matrix import Picture, picture
 from fretc.report.page.selection import PageContent, selection, slimmed
-from fretc.report.page.sheets import sheet_style
+from fretc.report.page.sheets import MOST_COLUMNS, sheet_style
 from fretc.report.page.tree import MOST, NAMES, Placement, grouped, pieces, placements, shortened
 from fretc.report.pictures.plots import drawing, histogram, probability
 from fretc.report.sections.argument import argument
@@ -87,6 +87,7 @@ def html(
         inset=inset,
         script_hashes=[hash_source(script), *(inset.scripts if inset else ())],
         sheets=sheets,
+        most_columns=MOST_COLUMNS,
         style_hashes=[hash_source(style), hash_source(sheets), *([inset.style] if inset else ())],
     )
 
