@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from fretc.terminal.options import PATH, format_option, path_option
+from fretc.terminal.options import PATH, format_option, is_given, path_option, requirements_option
 from fretc.terminal.output import (
     EXIT_INCONCLUSIVE,
     EXIT_OK,
     EXIT_VIOLATION,
     fail,
+    or_fail,
     painted,
     print_diagnostics,
     protect,
@@ -51,14 +52,10 @@ if TYPE_CHECKING:
     help="Address of the report of each round, for links of the page; `{name}` is the name of its "
     "evidence without its ending: --reports '../{name}/report.html'.",
 )
-@path_option(
-    "--requirements",
-    help="Requirements whose titles and time limits the page shows.  [default: requirements, if "
-    "it exists]",
-)
+@requirements_option
 def trends(
     evidence: tuple[str, ...],
-    requirements: str | None,
+    requirements: str,
     by: str | None,
     level: float,
     output_format: str,
@@ -71,7 +68,8 @@ def trends(
     with runs of several days. The newest round is compared with all earlier ones, by
     requirement and scenario. The scenario is a label of the run, or else the name of the log.
     Every change of a verdict is reported. Longer latencies and smaller margins are reported if
-    they are statistically significant.
+    they are statistically significant. The page shows titles and time limits of the
+    requirements, if they are there.
 
     Exit status: 0 no new violation and no regression, 1 a new violation or a regression, 3 a
     known result has become unknown, or nothing can be compared, 2 bad usage or bad input.
@@ -98,8 +96,8 @@ def trends(
     if html is not None:
         from fretc.trends.page import html as page
 
-        named = _known_requirements(requirements, known.sentences)
-        write_outputs({Path(html): page(known, reports, named)}, evidence)
+        named, files = _known_requirements(requirements, known.sentences)
+        write_outputs({Path(html): page(known, reports, named)}, [*evidence, *files])
     if output_format == "json":
         from fretc.trends.json_form import text
 
@@ -115,14 +113,21 @@ def trends(
     raise SystemExit(worse or (EXIT_OK if known.is_comparable else EXIT_INCONCLUSIVE))
 
 
-def _known_requirements(path: str | None, sentences: Mapping[str, str]) -> KnownRequirements:
-    """The titles and limits of the named requirements, or of the default folder if it exists."""
+def _known_requirements(
+    path: str, sentences: Mapping[str, str]
+) -> tuple[KnownRequirements, Sequence[str]]:
+    """Titles and limits of the requirements, and the files that were read.
+
+    The default folder may be missing.
+    """
     from compiler.project.folder import load_folder
+    from compiler.project.paths import companions, requirement_files
     from fretc.trends.known_requirements import NOTHING_KNOWN, known_requirements
 
-    project = load_folder(path or "requirements")
-    if not isinstance(project, Diagnostic):
-        return known_requirements(project, sentences)
-    if path is not None:
-        fail(project)
-    return NOTHING_KNOWN
+    files = requirement_files(path)
+    if isinstance(files, Diagnostic):
+        if is_given("requirements"):
+            fail(files)
+        return NOTHING_KNOWN, ()
+    project = or_fail(load_folder(path))
+    return known_requirements(project, sentences), (*files, *companions(files))
