@@ -48,7 +48,7 @@ _LISTS = (
     _List("still", "Still violated",
           "Violated now, and in the last round with a known outcome.", (VerdictChange.STILL,),
           signs.BAD),
-    _List("lost", "Known before, open now",
+    _List("lost", "Decided before, undecided now",
           "Violated or shown before; the newest round leaves it open, so nothing is fixed.",
           (VerdictChange.LOST,), signs.UNKNOWN),
     _List("fixed", "Fixed",
@@ -144,7 +144,7 @@ def _headline(trends: Trends) -> str:
         (len(trends.with_finding(ComparisonFinding.REGRESSED)), "regression", ""),
         (len(trends.of(VerdictChange.STILL)), "requirement still violated in a scenario",
          "requirements still violated in scenarios"),
-        (len(trends.lost), "verdict lost", "verdicts lost"),
+        (len(trends.lost), "verdict undecided now", "verdicts undecided now"),
         (len(trends.of(VerdictChange.FIXED)), "fixed", "fixed"),
     )  # fmt: skip
     parts = [phrases.times(count, one, many) for count, one, many in counts if count]

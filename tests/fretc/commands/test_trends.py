@@ -34,7 +34,7 @@ def test_a_new_violation_is_told_and_is_the_exit_status(fretc: Fretc) -> None:
         "✘ 1 newly violated\n"
         "    R1            a.mcap                  ✔✘  violated\n"
         "\n"
-        "? 1 known before, open now\n"
+        "? 1 decided before, undecided now\n"
         "    R2            b.mcap                  ✔?  no data\n"
         "\n"
         "0 shown as before, 0 never shown; 0 flaky in all\n"
