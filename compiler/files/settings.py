@@ -13,6 +13,7 @@ from dataclasses import field, replace
 from pathlib import Path
 from typing import Any
 
+from compiler.files import log_viewer
 from compiler.files.attribution import FIELDS, NOBODY, Attribution, InvalidField, attribution
 from compiler.files.text_files import read as read_text
 from fretish.classes.frozen import dataclass
@@ -24,7 +25,7 @@ from fretish.reading.toml_text import read as read_tables
 NAME, SHARED = "fretc.toml", "pyproject.toml"
 _TABLE = ("tool", "fretc")
 """The table of the settings in `pyproject.toml`, which other tools share."""
-_FIELDS = ("parents", "accept", "project")
+_FIELDS = ("parents", "accept", "project", "viewer")
 OUTSIDE: ContextVar[tuple[str, ...]] = ContextVar("OUTSIDE", default=())
 """Folders outside of the project that may contain parents, named on the command line."""
 
@@ -41,6 +42,8 @@ class Settings:
     """Code of a warning → the reason for accepting it, for all of them or by subject."""
     project: Attribution = NOBODY
     """Maintainer and license of the project."""
+    viewer: str = ""
+    """The address at which another program shows a log at a time; "" if there is none."""
     tables: Tables | None = None
     table: tuple[str, ...] = ()
     """The table of the file that contains the settings."""
@@ -147,7 +150,12 @@ def _settings(empty: Settings, table: Any) -> Settings | Diagnostic:
     project = _project_table(empty, table.get("project", {}))
     if isinstance(project, Diagnostic):
         return project
-    return replace(empty, parents=tuple(parents), accept=accept, project=project)
+    viewer = table.get("viewer", "")
+    mistake = log_viewer.mistake(viewer) if "viewer" in table else ""
+    if mistake:
+        fix = f"write one such as `{log_viewer.EXAMPLE}`"
+        return _bad_settings(empty, f"`viewer` {mistake}", fix, "viewer")
+    return replace(empty, parents=tuple(parents), accept=accept, project=project, viewer=viewer)
 
 
 def _project_table(empty: Settings, table: Any) -> Attribution | Diagnostic:

@@ -87,6 +87,7 @@ def load(
         above,
         accepted,
         chosen.project if isinstance(chosen, Settings) else NOBODY,
+        chosen.viewer if isinstance(chosen, Settings) else "",
         refused(written, requirements, own, declarations, of_all),
     )
 

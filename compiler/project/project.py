@@ -69,6 +69,8 @@ class Project:
     """The accepted warnings with their reasons. In `diagnostics` such warnings are marked."""
     attribution: Attribution = NOBODY
     """Author, maintainer and license of the project, from its settings."""
+    viewer: str = ""
+    """The address at which another program shows a log at a time (`compiler.files.log_viewer`)."""
     refused: tuple[Refused, ...] = ()
     """The requirements with an error in what they read: no file is generated from them."""
 

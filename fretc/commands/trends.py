@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
-from fretc.terminal.options import PATH, format_option, path_option
+from fretc.terminal.options import PATH, format_option, is_given, path_option, requirements_option
 from fretc.terminal.output import (
     EXIT_INCONCLUSIVE,
     EXIT_OK,
     EXIT_VIOLATION,
     fail,
+    or_fail,
     painted,
     print_diagnostics,
     protect,
@@ -19,6 +22,9 @@ from fretc.terminal.output import (
 )
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
+
+if TYPE_CHECKING:
+    from fretc.trends.known_requirements import KnownRequirements
 
 
 @click.command()
@@ -46,8 +52,10 @@ from fretish.diagnostics.messages import diagnostic
     help="Address of the report of each round, for links of the page; `{name}` is the name of its "
     "evidence without its ending: --reports '../{name}/report.html'.",
 )
+@requirements_option
 def trends(
     evidence: tuple[str, ...],
+    requirements: str,
     by: str | None,
     level: float,
     output_format: str,
@@ -60,7 +68,8 @@ def trends(
     with runs of several days. The newest round is compared with all earlier ones, by
     requirement and scenario. The scenario is a label of the run, or else the name of the log.
     Every change of a verdict is reported. Longer latencies and smaller margins are reported if
-    they are statistically significant.
+    they are statistically significant. The page shows titles and time limits of the
+    requirements, if they are there.
 
     Exit status: 0 no new violation and no regression, 1 a new violation or a regression, 3 a
     known result has become unknown, or nothing can be compared, 2 bad usage or bad input.
@@ -87,7 +96,8 @@ def trends(
     if html is not None:
         from fretc.trends.page import html as page
 
-        write_outputs({Path(html): page(known, reports)}, evidence)
+        named, files = _known_requirements(requirements, known.sentences)
+        write_outputs({Path(html): page(known, reports, named)}, [*evidence, *files])
     if output_format == "json":
         from fretc.trends.json_form import text
 
@@ -101,3 +111,23 @@ def trends(
         print_diagnostics([diagnostic("nothing_to_compare")])
     worse = EXIT_VIOLATION if known.is_worse else None
     raise SystemExit(worse or (EXIT_OK if known.is_comparable else EXIT_INCONCLUSIVE))
+
+
+def _known_requirements(
+    path: str, sentences: Mapping[str, str]
+) -> tuple[KnownRequirements, Sequence[str]]:
+    """Titles and limits of the requirements, and the files that were read.
+
+    The default folder may be missing.
+    """
+    from compiler.project.folder import load_folder
+    from compiler.project.paths import companions, requirement_files
+    from fretc.trends.known_requirements import NOTHING_KNOWN, known_requirements
+
+    files = requirement_files(path)
+    if isinstance(files, Diagnostic):
+        if is_given("requirements"):
+            fail(files)
+        return NOTHING_KNOWN, ()
+    project = or_fail(load_folder(path))
+    return known_requirements(project, sentences), (*files, *companions(files))

@@ -41,7 +41,7 @@ _SECTIONS = (
     _Section("newly violated", (VerdictChange.NEW,), signs.BAD, 8),
     _Section("violated, and never judged before", (VerdictChange.FIRST_VIOLATED,), signs.BAD, 8),
     _Section("still violated", (VerdictChange.STILL,), signs.BAD, 6),
-    _Section("known before, open now", (VerdictChange.LOST,), signs.UNKNOWN, 5),
+    _Section("decided before, undecided now", (VerdictChange.LOST,), signs.UNKNOWN, 5),
     _Section("fixed", (VerdictChange.FIXED,), signs.GOOD, 4),
 )
 

@@ -20,7 +20,7 @@ from compiler.targets.python.comparisons import NUMBER, CompiledComparison, numb
 from compiler.targets.python.input_adapter import InputAdapter
 from compiler.targets.target import stem
 from fretc.play.starts import MOST, Start
-from fretc.report.model.phrases import visible
+from fretc.report.model.phrases import joined, times, visible
 from fretc.report.page.html import Inset, hash_source
 from fretc.testing.suite import SCHEMA, Tested
 from fretish.diagnostics import status_symbols as signs
@@ -88,7 +88,7 @@ def inset(
     hashes = [hash_source(each) for each in (monitor, script, style)]
     text = render(
         "play/page.html.j2",
-        title=visible(", ".join(requirement.id for requirement in now[:_TITLED]) + _more(len(now))),
+        title=visible(_title(now)),
         notes=[visible(note) for note in notes],
         is_compared=bool(before),
         tick=str(requirements[0].clock) if requirements[0].clock else "",
@@ -118,12 +118,14 @@ def inset(
 
 
 _PARTS = ("trace", "words", "grid", "gestures")
-_TITLED = 6
-"""Maximum number of ids in the title."""
 
 
-def _more(count: int) -> str:
-    return f" and {count - _TITLED} more" if count > _TITLED else ""
+def _title(requirements: Sequence[FormalizedRequirement]) -> str:
+    """The name of one requirement; the components of several, and their number."""
+    if len(requirements) == 1:
+        return requirements[0].entry.name
+    components = sorted({requirement.sentence.component for requirement in requirements})
+    return f"{joined(components)}: {times(len(requirements), 'requirement')}"
 
 
 def _grouped(starts: Sequence[Start]) -> Iterator[tuple[str, list[tuple[int, str]]]]:

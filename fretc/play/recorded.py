@@ -20,7 +20,7 @@ from fretc.logs.reader import read
 from fretc.logs.signals.traces import WholeTicks, trace
 from fretc.logs.storage.log_names import path_of
 from fretc.play.starts import MOST, RecordedPlace, Start, Ticks
-from fretish.classes.frozen import dataclass
+from fretc.report.model.phrases import times
 from fretish.diagnostics.diagnostic import Diagnostic
 from monitors.kernel import Column, Monitor, evaluate
 from monitors.kernel.stepping import literals_of
@@ -170,7 +170,8 @@ class RecordedRun:
                 yield f"{self._id}: {what}: what led to it takes more than {MOST} ticks"
         more = self.violations - SHOWN
         if more > 0:
-            yield f"{self._id}: {more} more violations of {self._name} are left out"
+            verb = "is" if more == 1 else "are"
+            yield f"{self._id}: {times(more, 'more violation')} of {self._name} {verb} left out"
 
     def _window(self, first: int, last: int) -> tuple[int, int] | None:
         """First and last tick of a window that shows a violation; None if it would be too long."""

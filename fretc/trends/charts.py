@@ -6,10 +6,11 @@ Each picture has a text with the same information: it never depends on colour al
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 from pathlib import PurePosixPath
 from statistics import median
+from types import MappingProxyType
 from typing import Any
 from urllib.parse import quote
 
@@ -24,8 +25,10 @@ from fretc.trends.comparisons import (
     amount,
 )
 from fretc.trends.histories import Round
+from fretc.trends.known_requirements import NOTHING_KNOWN, KnownRequirements
 from fretc.trends.trends import Item, Trends
 from fretish.diagnostics import status_symbols as signs
+from fretish.documents import named
 from fretish.reading.natural_order import natural
 
 _CELL, _TALL = 9, 16
@@ -82,7 +85,9 @@ MOST_ROWS = 200
 """The most requirements of a heat map; it has the worst ones."""
 
 
-def heat_map(trends: Trends, address: str = "") -> dict[str, Any]:
+def heat_map(
+    trends: Trends, address: str = "", titles: Mapping[str, str] = MappingProxyType({})
+) -> dict[str, Any]:
     """A row for each requirement, the worst first, and a column for each round.
 
     A cell has the worst outcome of its scenarios.
@@ -90,6 +95,7 @@ def heat_map(trends: Trends, address: str = "") -> dict[str, Any]:
     Args:
         trends: the trends.
         address: of the report of a round, with `{name}` for the name of its evidence; "" without.
+        titles: id of a requirement → its title.
     """
     first = max(0, len(trends.rounds) - MOST_COLUMNS)
     rows: dict[str, list[Item]] = defaultdict(list)
@@ -104,6 +110,7 @@ def heat_map(trends: Trends, address: str = "") -> dict[str, Any]:
         "rows": [
             {
                 "id": id,
+                "title": titles.get(id, ""),
                 "sentence": trends.sentences.get(id, ""),
                 "cells": [
                     _heat(id, each.days or each.name, [i.round_outcomes[number] for i in items], to)
@@ -151,7 +158,11 @@ _MOST_PANELS = 8
 
 
 def chart(
-    one: VersionComparison, rounds: Sequence[str], is_after: Sequence[bool], id: str
+    one: VersionComparison,
+    rounds: Sequence[str],
+    is_after: Sequence[bool],
+    id: str,
+    known: KnownRequirements = NOTHING_KNOWN,
 ) -> dict[str, Any]:
     """The numbers of all runs over the rounds, with a panel for each scenario.
 
@@ -160,8 +171,10 @@ def chart(
         rounds: the names of the rounds on the axis.
         is_after: for each run, whether it belongs to the newer side of the comparison.
         id: the id of the chart.
+        known: titles and time limits of the requirements.
     """
-    numbers = [value.number for value in one.values]
+    bound = _bound(one.measure, known)
+    numbers = [*(value.number for value in one.values), *([] if bound is None else [bound])]
     low, high = min([0.0, *numbers]), max([0.0, *numbers])
     high = high if high > low else low + 1.0
     high = -(-high // (width := step((high - low) / 3))) * width
@@ -178,14 +191,16 @@ def chart(
     base = _TOP + _PANEL * len(panels)
     return frame(
         id,
-        f"{one.measure.ids}: {one.measure}",
-        _text(one, of_round),
+        f"{_named(one.measure, known)}: {one.measure}",
+        _text(one, of_round, bound),
         x,
         base + 46,
         base=base,
         worse=f"worse {'↓' if one.measure.is_better_larger else '↑'}",
         panels=[
-            _panel(name, values, one, is_after, x, Scale(low, high, top + _PANEL - 8, top + 20))
+            _panel(
+                name, values, bound, one, is_after, x, Scale(low, high, top + _PANEL - 8, top + 20)
+            )
             for number, (name, values) in enumerate(panels.items())
             for top in [_TOP + _PANEL * number]
         ],
@@ -196,12 +211,13 @@ def chart(
 def _panel(
     name: str,
     values: Sequence[Value],
+    bound: float | None,
     one: VersionComparison,
     is_after: Sequence[bool],
     x: Scale,
     y: Scale,
 ) -> dict[str, Any]:
-    """The numbers of one scenario; the bound of a margin is 0."""
+    """The numbers of one scenario, with their bound if it is known."""
     of_round: dict[int, list[Value]] = defaultdict(list)
     for value in values:
         of_round[value.round].append(value)
@@ -217,12 +233,22 @@ def _panel(
             (x(number + 0.15), x(number + 0.85), y(median(value.number for value in some)))
             for number, some in sorted(of_round.items())
         ],
-        "bound": y(0.0) if one.measure.is_better_larger else None,
+        "bound": None if bound is None else y(bound),
         "marks": [
             (y(place), phrases.value(place, one.measure.unit))
             for place in places(y.first, y.last, 3)
         ],
     }
+
+
+def _bound(measure: ComparedMeasure, known: KnownRequirements) -> float | None:
+    """The bound of a number: 0 of a margin, the allowed time of a latency; None: unknown."""
+    return 0.0 if measure.is_better_larger else known.limits.get(measure.ids)
+
+
+def _named(measure: ComparedMeasure, known: KnownRequirements) -> str:
+    """The title and id of one requirement, or the ids of several."""
+    return named(measure.ids, known.titles.get(measure.ids, ""))
 
 
 def _chosen(values: Sequence[Value], measure: ComparedMeasure) -> Sequence[Value]:
@@ -241,13 +267,14 @@ def _spread(values: Sequence[Value]) -> Iterator[tuple[float, Value]]:
         yield 0.2 + 0.6 * (i + 0.5) / len(values), value
 
 
-def _text(one: VersionComparison, of_round: dict[int, list[Value]]) -> str:
+def _text(one: VersionComparison, of_round: dict[int, list[Value]], bound: float | None) -> str:
     unit = one.measure.unit
     ends = [
-        f"round {number + 1} {amount(median(v.number for v in of_round[number]), unit)}"
+        f"{amount(median(v.number for v in of_round[number]), unit)} in round {number + 1}"
         for number in dict.fromkeys((min(of_round), max(of_round)))
     ]
-    medians = f"Median of {' and of '.join(ends)}"
+    medians = f"Median {' and '.join(ends)}"
+    medians += f"; allowed {amount(bound, unit)}" if bound else ""
     runs = phrases.times(len(one.values), "run")
     if one.finding is ComparisonFinding.REGRESSED:
         return f"Significantly worse, by medians: {one.worse}. {medians}; {runs} in all."

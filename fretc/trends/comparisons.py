@@ -14,7 +14,7 @@ from enum import StrEnum
 from statistics import median
 
 from fretc.audit.evidence.schema import ThresholdRecord
-from fretc.report.model.phrases import some, value
+from fretc.report.model.phrases import some, times, value
 from fretc.trends.histories import ComparableRuns, Histories, HistoryRun, RunOutcome
 from fretc.trends.rank_test import RankTest, decidable, fewer, holm, larger
 from fretish.classes.frozen import dataclass
@@ -96,7 +96,7 @@ class VersionComparison:
         ends = (amount(number or 0.0, self.measure.unit) for number in (self.before, self.after))
         p = 1.0 if self.p is None else self.p
         chance = "p < 0.001" if p < 0.001 else f"p = {p:.2g}"
-        runs = f"{self.runs_before} and {self.runs_after} runs"
+        runs = f"{self.runs_before} and {times(self.runs_after, 'run')}"
         return f"{' to '.join(ends)} ({runs}), {chance}"
 
 

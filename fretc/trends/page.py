@@ -15,6 +15,7 @@ from fretc.report.page.html import hash_source, visible_texts
 from fretc.trends.changes import RED, VerdictChange
 from fretc.trends.charts import chart, heat_map, strip
 from fretc.trends.comparisons import ComparisonFinding, VersionComparison
+from fretc.trends.known_requirements import NOTHING_KNOWN, KnownRequirements
 from fretc.trends.trends import Group, Item, Trends, arrived, gone, not_selected
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics import status_symbols as signs
@@ -23,6 +24,8 @@ from fretish.diagnostics.status_symbols import StatusSymbol
 _MOST_RED, _MOST = 500, 150
 """The most rows of a list; the omitted ones are counted, with their requirements."""
 _MOST_CHARTS = 24
+_FOLDED = 12
+"""Above this number of rows a list is folded, unless it is red."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +49,7 @@ _LISTS = (
     _List("still", "Still violated",
           "Violated now, and in the last round with a known outcome.", (VerdictChange.STILL,),
           signs.BAD),
-    _List("lost", "Known before, open now",
+    _List("lost", "Decided before, undecided now",
           "Violated or shown before; the newest round leaves it open, so nothing is fixed.",
           (VerdictChange.LOST,), signs.UNKNOWN),
     _List("fixed", "Fixed",
@@ -58,16 +61,17 @@ _LISTS = (
 )  # fmt: skip
 
 
-def html(trends: Trends, reports: str = "") -> str:
+def html(trends: Trends, reports: str = "", known: KnownRequirements = NOTHING_KNOWN) -> str:
     """The text of the whole file.
 
     Args:
         trends: the trends.
         reports: the address of the report of a round, with `{name}` for the name of its
             evidence; "" if the page has no links to reports.
+        known: titles and time limits of the requirements.
     """
     style = render("report/style.css.j2") + render("trends/style.css.j2")
-    lists = [_listed(change_list, trends.of(*change_list.kinds)) for change_list in _LISTS]
+    lists = [_listed(change_list, trends.of(*change_list.kinds), known) for change_list in _LISTS]
     flaky = [item for item in trends.items if item.flaky]
     regressed = trends.with_finding(ComparisonFinding.REGRESSED)
     others = [
@@ -86,6 +90,7 @@ def html(trends: Trends, reports: str = "") -> str:
         style=style,
         style_hash=hash_source(style),
         fretc=__version__,
+        times=phrases.times,
         **visible_texts(
             {
                 "mark": _mark(trends),
@@ -93,11 +98,11 @@ def html(trends: Trends, reports: str = "") -> str:
                 "facts": _facts(trends),
                 "rounds": [_round(i, each) for i, each in enumerate(trends.rounds, 1)],
                 "by": trends.by,
-                "heat": heat_map(trends, reports),
+                "heat": heat_map(trends, reports, known.titles),
                 "has_days": any(each.days != each.name for each in trends.rounds),
                 "lists": [change_list for change_list in lists if change_list["rows"]],
                 "flaky": {
-                    "rows": _rows(flaky[:_MOST_RED]),
+                    "rows": _rows(flaky[:_MOST_RED], known),
                     "left": _left(flaky[_MOST_RED:]),
                     "count": phrases.whole(len(flaky)),
                 },
@@ -110,12 +115,12 @@ def html(trends: Trends, reports: str = "") -> str:
                 "arrived": _groups(arrived(trends)),
                 "compared": {"before": trends.compared.before, "after": trends.compared.after},
                 "level": f"{trends.level:g}",
-                "regressed": _charts(trends, regressed[:_MOST_CHARTS], "regressed"),
+                "regressed": _charts(trends, regressed[:_MOST_CHARTS], "regressed", known),
                 "regressed_lines": [
                     f"{one.measure.ids}, {one.measure}: {one.worse}"
                     for one in regressed[_MOST_CHARTS:]
                 ],
-                "others": _charts(trends, pictured, "other"),
+                "others": _charts(trends, pictured, "other", known),
                 "few": len(trends.with_finding(ComparisonFinding.TOO_FEW)),
                 "chance": len(trends.with_finding(ComparisonFinding.CHANCE)),
                 "pictured": len(pictured),
@@ -140,7 +145,7 @@ def _headline(trends: Trends) -> str:
         (len(trends.with_finding(ComparisonFinding.REGRESSED)), "regression", ""),
         (len(trends.of(VerdictChange.STILL)), "requirement still violated in a scenario",
          "requirements still violated in scenarios"),
-        (len(trends.lost), "verdict lost", "verdicts lost"),
+        (len(trends.lost), "verdict undecided now", "verdicts undecided now"),
         (len(trends.of(VerdictChange.FIXED)), "fixed", "fixed"),
     )  # fmt: skip
     parts = [phrases.times(count, one, many) for count, one, many in counts if count]
@@ -173,7 +178,7 @@ def _round(number: int, each: Any) -> dict[str, Any]:
     }
 
 
-def _listed(each: _List, items: Sequence[Item]) -> dict[str, Any]:
+def _listed(each: _List, items: Sequence[Item], known: KnownRequirements) -> dict[str, Any]:
     most = _MOST_RED if each.sign is signs.BAD else _MOST
     return {
         "anchor": each.anchor,
@@ -181,7 +186,8 @@ def _listed(each: _List, items: Sequence[Item]) -> dict[str, Any]:
         "about": each.about,
         "sign": asdict(each.sign),
         "count": phrases.whole(len(items)),
-        "rows": _rows(items[:most]),
+        "rows": _rows(items[:most], known),
+        "is_folded": each.sign is not signs.BAD and len(items) > _FOLDED,
         "left": _left(items[most:]),
     }
 
@@ -201,10 +207,11 @@ def _groups(groups: Sequence[Group]) -> list[str]:
     return [*lines, f"{phrases.whole(more)} more: `--format json` has all"] if more > 0 else lines
 
 
-def _rows(items: Sequence[Item]) -> list[dict[str, Any]]:
+def _rows(items: Sequence[Item], known: KnownRequirements) -> list[dict[str, Any]]:
     return [
         {
             "requirement": item.requirement,
+            "title": known.titles.get(item.requirement, ""),
             "scenario": str(item.scenario),
             "strip": strip(item.round_outcomes),
             "now": _now(item),
@@ -220,7 +227,11 @@ def _now(item: Item) -> str:
     return "; ".join([verdicts or "not judged", *notes])
 
 
-def _charts(trends: Trends, some: Sequence[VersionComparison], kind: str) -> list[dict[str, Any]]:
+def _charts(
+    trends: Trends, some: Sequence[VersionComparison], kind: str, known: KnownRequirements
+) -> list[dict[str, Any]]:
     after = trends.is_after
     names = [each.days[5:10] or str(number) for number, each in enumerate(trends.rounds, 1)]
-    return [chart(one, names, after, f"{kind}-{number}") for number, one in enumerate(some, 1)]
+    return [
+        chart(one, names, after, f"{kind}-{number}", known) for number, one in enumerate(some, 1)
+    ]

@@ -89,7 +89,7 @@ def _plan(assessment: Assessment, details: Details, most: int, marks: int) -> La
     of = _results(assessment, details)
     marked = with_marks(of)
     calm = len(of) - len(marked)
-    note = f"No lane: {phrases.times(calm, 'run')} without such a tick." if calm else ""
+    note = f"{phrases.times(calm, 'run')} without such a tick: not drawn." if calm else ""
     return plan(f"{assessment.id} in its runs", marked, most, marks, note)
 
 

@@ -47,15 +47,12 @@ def line(text: str, names: Sequence[SectionLink]) -> FigureLine:
 
 
 def causes(
-    active: Sequence[RequirementView],
-    unshown: Sequence[RequirementView],
-    runs: Sequence[RunSummary],
+    unshown: Sequence[RequirementView], runs: Sequence[RunSummary]
 ) -> tuple[FigureLine, ...]:
     """A line for each cause, with the requirements that are not shown because of it.
 
     Args:
-        active: all requirements in force.
-        unshown: active requirements that are neither shown nor violated.
+        unshown: requirements in force that are neither shown nor violated.
         runs: all audited runs.
     """
     damaged = [run for run in runs if not run.intact]
@@ -64,7 +61,7 @@ def causes(
     for view in unshown:
         for cause in dict.fromkeys(_of(view, bad)):
             by_cause.setdefault(cause, []).append(link(view))
-    hurt = [view for view in active if any(_is_hurt(r.run, r.mark, bad) for r in view.results)]
+    hurt = [view for view in unshown if any(_is_hurt(r.run, r.mark, bad) for r in view.results)]
     lines = [line(cause, by_cause[cause]) for cause in _ORDER if cause in by_cause]
     return (*([_damage(damaged, len(hurt))] if hurt else []), *lines)
 

@@ -164,7 +164,7 @@ def _violated(active: Sequence[RequirementView], red: Sequence[RequirementView])
 def _not_shown(active: Sequence[RequirementView], runs: Sequence[RunSummary]) -> Figure:
     unshown = [view for view in active if not view.mark.shows and not violations.is_red(view)]
     kind = signs.OPEN.kind if unshown else ""
-    lines = causes(active, unshown, runs)
+    lines = causes(unshown, runs)
     return Figure("not shown", len(unshown), "not shown", kind, "not-shown", lines)
 
 

@@ -48,7 +48,7 @@ def identity(
         rows.append(IdentityRow("Exposure", tuple(_exposure(runs, groups, evidence))))
         most = percent(highest(0, len(runs), _SIDE))
         text = (
-            f"a requirement that holds in all {phrases.times(len(runs), 'run')} may fail in up to "
+            f"a requirement that holds in {phrases.every(len(runs), 'run')} may fail in up to "
             f"{most} of such runs (95 % interval, Clopper-Pearson, if the runs are independent)"
         )
         rows.append(IdentityRow("Confidence", (text,)))

@@ -40,8 +40,8 @@ from fretish.documents import RequirementEntry
 from monitors import kernel
 
 UNBOUND, NOT_GENERATED = "unbound", "not generated"
-EXERCISED_PASS, EXERCISED_FAIL = "exercised, pass", "exercised, fail"
-EXERCISED_OPEN = "exercised, open"
+EXERCISED_PASS, EXERCISED_FAIL = "exercised and shown", "exercised and violated"
+EXERCISED_OPEN = "exercised, not decided"
 COVERAGE = (
     UNFORMALIZED, UNBOUND, NOT_GENERATED, NOT_EXERCISED, EXERCISED_OPEN, EXERCISED_PASS,
     EXERCISED_FAIL, SUSPECT, WAIVED, RETIRED,

@@ -1,7 +1,7 @@
 """The cause of a violation in words, where it follows from the evidence of its first tick.
 
-Examples: `the last sample of `clearance` was 304 ms old, 300 ms are allowed`; `vx` was 0.52 m/s, at
-most 0.5 m/s is allowed`. No cause is given if the evidence does not determine it: for a value too
+Examples: `the last sample of `clearance` was 304 ms old, 300 ms are allowed`; `vx` was 0.52 m/s,
+must be at most 0.5 m/s`. No cause is given if the evidence does not determine it: for a value too
 near its bound for the rounding of samples, for `for 200 ms`, for `pre`, for several samples in one
 tick, and for signals of unknown age.
 """
@@ -196,12 +196,12 @@ def _texts(tree: e.Expression, *, wanted: bool, at: _ViolationTick) -> list[str]
 
 _NEGATED: Mapping[str, str] = {"<": ">=", "<=": ">", ">": "<=", ">=": "<", "=": "!=", "!=": "="}
 _NEEDED = {
-    "<": "less than {} is allowed",
-    "<=": "at most {} is allowed",
-    ">": "more than {} is required",
-    ">=": "at least {} is required",
-    "=": "{} is required",
-    "!=": "any value but {} is required",
+    "<": "must be below {}",
+    "<=": "must be at most {}",
+    ">": "must be above {}",
+    ">=": "must be at least {}",
+    "=": "must be {}",
+    "!=": "must not be {}",
 }
 
 

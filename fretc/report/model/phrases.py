@@ -22,6 +22,13 @@ def times(count: int, one: str, many: str = "") -> str:
     return f"{whole(count)} {one if count == 1 else many or one + 's'}"
 
 
+def every(count: int, one: str, many: str = "") -> str:
+    """`the only run`, `all 2 runs`; of none `no run`."""
+    if count <= 1:
+        return f"the only {one}" if count else f"no {one}"
+    return f"all {times(count, one, many)}"
+
+
 def whole(number: int) -> str:
     """`1 852 914`: digits in groups of three, with narrow spaces that do not break."""
     return f"{number:,}".replace(",", _NARROW)

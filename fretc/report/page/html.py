@@ -11,16 +11,18 @@ from typing import Any
 from compiler.explanation.diagram import diagram
 from compiler.explanation.drawing import DiagramDrawing
 from compiler.explanation.drawing import drawing as diagram_drawing
+from compiler.files import log_viewer
 from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
 from fretc.report.across.layout import drawn_lanes, drawn_map, drawn_uses
 from fretc.report.model.changes import RequirementChanges, follows, new_violations
-from fretc.report.model.phrases import joined, visible
+from fretc.report.model.phrases import joined, times, visible
+from fretc.report.model.pictures import Timeline
 from fretc.report.model.sets import SetConflict
 from fretc.report.model.views import ReportView
 from fretc.report.page.matrix import Picture, picture
 from fretc.report.page.selection import PageContent, selection, slimmed
-from fretc.report.page.sheets import sheet_style
+from fretc.report.page.sheets import MOST_COLUMNS, sheet_style
 from fretc.report.page.tree import MOST, NAMES, Placement, grouped, pieces, placements, shortened
 from fretc.report.pictures.plots import drawing, histogram, probability
 from fretc.report.sections.argument import argument
@@ -65,10 +67,11 @@ def html(
     script, style, sheets = render(_SCRIPT), render(_STYLE), sheet_style(report)
     return render(
         "report/report.html.j2",
+        times=times,
         report=visible_texts(page),
         selection=visible_texts(choice),
         anchors=choice.anchors,
-        pictures=visible_texts(_pictures(choice)),
+        pictures=visible_texts(_pictures(choice, details.project.viewer)),
         histograms=visible_texts(_histograms(choice, details)),
         scales=visible_texts(_scales(page)),
         diagrams=_diagrams(page, requirements),
@@ -85,6 +88,7 @@ def html(
         inset=inset,
         script_hashes=[hash_source(script), *(inset.scripts if inset else ())],
         sheets=sheets,
+        most_columns=MOST_COLUMNS,
         style_hashes=[hash_source(style), hash_source(sheets), *([inset.style] if inset else ())],
     )
 
@@ -111,16 +115,25 @@ def hash_source(text: str) -> str:
     return f"sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}"
 
 
-def _pictures(choice: PageContent) -> dict[str, list[dict[str, Any]]]:
-    """Anchor of a result with details → its timelines."""
+def _pictures(choice: PageContent, viewer: str) -> dict[str, list[dict[str, Any]]]:
+    """Anchor of a result with details → its timelines, each with a link to its log."""
     return {
         result.anchor: [
             drawing(timeline, f"picture-{result.anchor}.{number}")
+            | _log_link(timeline, result.run_file, viewer)
             for number, timeline in enumerate(result.timelines, 1)
         ]
         for section in choice.by_anchor.values()
         for result in (*section.details, *section.folded)
     }
+
+
+def _log_link(timeline: Timeline, log: str, viewer: str) -> dict[str, str]:
+    """The link to the log at the first violated tick; empty without a viewer or a violation."""
+    if not viewer or timeline.broken is None or timeline.epoch_ns is None:
+        return {"log": ""}
+    at = timeline.epoch_ns + round(timeline.broken.start * 1e9)
+    return {"log": log_viewer.link(viewer, log, at), "log_host": log_viewer.host(viewer)}
 
 
 def _plays(report: ReportView) -> dict[str, list[dict[str, Any] | None]]:

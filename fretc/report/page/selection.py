@@ -191,12 +191,15 @@ def _detailed(views: Sequence[RequirementView], most: int) -> Mapping[str, Resul
 def _shortened(results: Sequence[ResultView], limits: _Limits) -> Mapping[str, ResultView]:
     """The results in their order, with as many pictures and violations as the limits allow.
 
-    The first violation of each result comes first, then runs without one, then other violations.
+    The first violation of each result comes first, then runs in which unknown values decided, then
+    other runs without a violation, then other violations.
     """
     drawn = [[*filter(_has_content, result.timelines)] for result in results]
+    calm = [each for each in enumerate(results) if not each[1].violations_total]
     turns = [
         [(number, 0) for number, result in enumerate(results) if result.violations_total],
-        [(number, 0) for number, result in enumerate(results) if not result.violations_total],
+        [(number, 0) for number, result in calm if result.unknown_inputs.total],
+        [(number, 0) for number, result in calm if not result.unknown_inputs.total],
         [(number, i) for i in range(1, limits.pictures) for number in range(len(results))],
     ]
     wanted = [(number, i) for turn in turns for number, i in turn if i < len(drawn[number])]

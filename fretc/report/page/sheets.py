@@ -8,6 +8,11 @@ from fretc.report.model.views import ReportView
 
 _SHOWN = 16
 """Number of characters of the hash on a sheet; the table of hashes has it in full."""
+MOST_COLUMNS = 60
+"""Above this number of runs, a printed matrix has a card for each requirement, since smaller
+symbols cannot be read."""
+_WIDE, _HEADS, _COLUMN = 58, 27, 1.2
+"""Widths in root ems of the printed style: of the sheet, of the first columns, and of a run."""
 
 
 def sheet_style(report: ReportView) -> str:
@@ -27,7 +32,19 @@ def sheet_style(report: ReportView) -> str:
     }
     texts = "".join(f"@{box} {{ content: {quoted(text)}; }} " for box, text in boxes.items())
     number = '@bottom-right { content: "page " counter(page) " of " counter(pages); }'
-    return f"@page {{ font: 8pt sans-serif; {texts}{number} }}"
+    page = f"@page {{ font: 8pt sans-serif; {texts}{number} }}"
+    runs_in_matrix = sum(len(group.runs) for group in report.front.groups)
+    return (
+        f"{page} @media print {{ .matrix:not(.small, .wide) {{ zoom: {_zoom(runs_in_matrix)} }} }}"
+    )
+
+
+def _zoom(columns: int) -> str:
+    """The scale at which a matrix with so many runs is as wide as the paper; at most 1.
+
+    Without it, a browser would shrink the whole page, and cut what is still too wide.
+    """
+    return f"{min(1.0, _WIDE / (_HEADS + _COLUMN * columns)):.3f}"
 
 
 def quoted(text: str) -> str:

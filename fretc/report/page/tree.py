@@ -149,7 +149,7 @@ def shortened(elements: Sequence[Element]) -> tuple[Element, ...]:
 
 
 def grouped(elements: Sequence[Element]) -> tuple[Element, ...]:
-    """The elements, with many assumptions of a goal merged; part 6 of the report lists them all."""
+    """The elements, with many assumptions of a goal merged; “Assumptions” lists them."""
     kinds = {element.id: element.kind for element in elements}
     kept: list[Element] = []
     replaced: set[str] = set()
@@ -163,7 +163,7 @@ def grouped(elements: Sequence[Element]) -> tuple[Element, ...]:
         around = tuple(each for each in element.in_context_of if each not in assumed)
         kept.append(replace(element, in_context_of=(*around, id)))
         kept.append(
-            Element(id, ElementKind.ASSUMPTION, f"{len(assumed)} assumptions, listed in part 6")
+            Element(id, ElementKind.ASSUMPTION, f"{len(assumed)} assumptions, listed below")
         )
     return tuple(element for element in kept if element.id not in replaced)
 

@@ -11,7 +11,7 @@ from typing import Any
 from fretc.report.model.phrases import decimal, instant, whole
 from fretc.report.model.pictures import Histogram, NamedInstant, Panel, SignalPiece, Timeline
 from fretc.report.model.results import ProbabilityView
-from fretc.report.pictures.scales import RIGHT, WIDTH, Scale, frame, words
+from fretc.report.pictures.scales import RIGHT, WIDTH, Scale, fitting, frame, words
 
 _LEFT, _LETTER = 92, 6
 _ROW, _BAR, _TOP, _AXIS = 22, 12, 6, 26
@@ -60,7 +60,7 @@ def drawing(timeline: Timeline, id: str) -> dict[str, Any]:
         ],
         lanes=[
             {
-                "name": lane.name,
+                "name": fitting(lane.name, _LEFT - 8, _LETTER),
                 "kind": lane.kind,
                 "y": lanes_from + _ROW * i,
                 "bars": [x.bar(mark.start, mark.end) for mark in lane.marks],

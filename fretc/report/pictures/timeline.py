@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import floor, log10
 from types import MappingProxyType
@@ -23,6 +23,10 @@ DRAWN = 6
 """Maximum number of violations of one result with a picture; the report lists the others."""
 _AROUND = 10
 """Minimum number of ticks before and after a violation."""
+_INPUTS = 4
+"""Maximum number of lanes of unknown inputs."""
+_UNKNOWN = "unknown"
+"""The kind of lanes of unknown stretches, and the name of that of the requirement itself."""
 _MARGIN = 2.0
 """Minimum seconds before and after a violation."""
 _LONGEST = 20.0
@@ -215,18 +219,11 @@ class _Events:
             ("waiting", "waiting", _waiting(result)),
             ("violated", "violated", [_violated(v, tick) for v in result.violations]),
             (
-                "unknown",
-                "unknown",
+                _UNKNOWN,
+                _UNKNOWN,
                 [TimeInterval(first * tick, (last + 1) * tick) for first, last in result.unknown],
             ),
-            (
-                "no input",
-                "unknown",
-                [
-                    TimeInterval(one.start_s, one.end_s + tick)
-                    for one in result.unknown_inputs or ()
-                ],
-            ),
+            *_unknown_inputs(result, tick),
             ("open at end", "open", _open(result, tick)),
         ]
 
@@ -234,6 +231,22 @@ class _Events:
         lanes = [_lane(name, kind, events, window) for name, kind, events in self.lanes]
         visible = tuple(lane for lane in lanes if lane.marks or lane.kind == "trigger")
         return Timeline(title, window.start, window.end, visible, _in_words(visible, window))
+
+
+def _unknown_inputs(result: Result, tick: float) -> Iterator[tuple[str, str, list[TimeInterval]]]:
+    """A lane for each of the first propositions that were unknown, and one for all others."""
+    names = dict.fromkeys(one.proposition for one in result.unknown_inputs or ())
+    own = list(names) if len(names) <= _INPUTS else list(names)[: _INPUTS - 1]
+    for name in dict.fromkeys([*own, *(["other inputs"] if len(own) < len(names) else [])]):
+        yield (
+            name,
+            _UNKNOWN,
+            [
+                TimeInterval(one.start_s, one.end_s + tick)
+                for one in result.unknown_inputs or ()
+                if (one.proposition if one.proposition in own else "other inputs") == name
+            ],
+        )
 
 
 def _waiting(result: Result) -> list[TimeInterval]:
@@ -308,4 +321,7 @@ def _lane_in_words(lane: Lane) -> str:
     named = [f"{seconds(m.start)} to {seconds(m.end)}" for m in lane.marks[:_NAMED]]
     more = len(lane.marks) - len(named)
     rest = [times(more, "later stretch", "later stretches")] if more else []
-    return f"{times(count, one, many)} ({joined([*named, *rest])})"
+    what = times(count, one, many)
+    if lane.kind == _UNKNOWN and lane.name != _UNKNOWN:
+        what = f"`{lane.name}` unknown"
+    return f"{what} ({joined([*named, *rest])})"

@@ -132,7 +132,7 @@ def _held_in_runs(active: Sequence[Assessment], good: Sequence[Assessment], runs
         return f"The one requirement, {name}, {held if where else 'was not audited'}."
     everywhere = all(len(assessment.audits) == runs for assessment in good)
     where = _where(runs) if everywhere else "each run in which they were audited"
-    return f"{len(good)} of {len(active)} requirements held in {where}."
+    return f"{len(good)} of {phrases.times(len(active), 'requirement')} held in {where}."
 
 
 def _where(runs: int) -> str:
@@ -142,7 +142,8 @@ def _where(runs: int) -> str:
 def _refuted(ids: Sequence[str]) -> str:
     if not ids:
         return ""
-    return f"Verification found a counterexample to {phrases.some(ids)}; part 4 lists the claims."
+    found = f"Verification found a counterexample to {phrases.some(ids)}"
+    return f"{found}; their sections list the claims."
 
 
 def _waived(active: Sequence[Assessment]) -> str:
@@ -192,4 +193,5 @@ def _few(reservations: Sequence[str]) -> Sequence[str]:
     """The reservations, or a sentence with their number if there are many."""
     if len(reservations) <= 3:
         return reservations
-    return (f"There are {len(reservations)} reservations; part 2 lists them.",)
+    count = phrases.times(len(reservations), "reservation")
+    return (f"{count}, listed under “Shown, with a reservation”.",)

@@ -64,7 +64,7 @@ def test_a_violation_shows_the_words_that_caused_it(fretc: Fretc) -> None:
     assert {*violation.window.samples} == {"low"}
     assert fretc("report", "--evidence", "e.json", "--html", "r.html").status == 0
     page = Path("r.html").read_text("utf-8")
-    assert "<code>mode</code> was &#34;drive&#34;, <code>docking</code> is required" in page
+    assert "<code>mode</code> was &#34;drive&#34;, must be <code>docking</code>" in page
     assert "mode is &#34;drive&#34;." in page
     assert "<title>drive</title>" in page
     junit = fretc("audit", "log.mcap", "-o", "f.json", "--format", "junit").out

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from fretish.diagnostics.diagnostic import Diagnostic
-from tests.command import Fretc, Run
+from tests.command import Fretc, Run, write
 from tests.fretc.trends.nights import document, evidence, judged
 from tests.stores import write_document
 
@@ -34,7 +34,7 @@ def test_a_new_violation_is_told_and_is_the_exit_status(fretc: Fretc) -> None:
         "✘ 1 newly violated\n"
         "    R1            a.mcap                  ✔✘  violated\n"
         "\n"
-        "? 1 known before, open now\n"
+        "? 1 decided before, undecided now\n"
         "    R2            b.mcap                  ✔?  no data\n"
         "\n"
         "0 shown as before, 0 never shown; 0 flaky in all\n"
@@ -42,6 +42,26 @@ def test_a_new_violation_is_told_and_is_the_exit_status(fretc: Fretc) -> None:
         "  regressed, 0 no worse than chance, 0 with too few runs to tell\n",
         "",
     )
+
+
+def test_the_page_has_titles_of_requirements_and_replaces_none_of_their_files(
+    fretc: Fretc,
+) -> None:
+    evidence(Path("1.json"), judged("a.mcap"))
+    assert fretc("trends", "1.json", "--html", "t.html").status == 3
+    assert "Stop in time" not in Path("t.html").read_text("utf-8")
+    missing = fretc("trends", "1.json", "--html", "n.html", "--requirements", "none")
+    assert (missing.status, missing.err.partition("\n")[0]) == (
+        2,
+        "F901 there is no folder `none`",
+    )
+    assert not Path("n.html").exists()
+    write("none/r1.fret", '+++\nid = "R1"\ntitle = "Stop in time"\n+++\nr shall always satisfy p')
+    named = ("--requirements", "none", "--html")
+    assert fretc("trends", "1.json", *named, "t.html").status == 3
+    assert "Stop in time" in Path("t.html").read_text("utf-8")
+    assert fretc("trends", "1.json", *named, "none/r1.fret").status == 2
+    assert "Stop in time" in Path("none/r1.fret").read_text("utf-8")
 
 
 def test_the_exit_status_says_whether_something_is_worse_lost_or_incomparable(

@@ -10,12 +10,14 @@ import pytest
 from fretc.audit.evidence.reader import EvidenceFile
 from fretc.trends.changes import RoundOutcome
 from fretc.trends.charts import chart, heat_map, strip
+from fretc.trends.known_requirements import KnownRequirements, known_requirements
 from fretc.trends.page import html
 from fretc.trends.trends import Trends
 from fretc.trends.trends import trends as trends_of
 from tests.browsing import Visits, serious
 from tests.effort import some
 from tests.fretc.audit.results import SHA
+from tests.fretc.report.cases import project, requirement
 from tests.fretc.trends.nights import document, judged
 
 HOSTILE = "</style><script>document.title = 'broken'</script>\u202egnp.exe\x1b" + "x" * 100
@@ -108,6 +110,40 @@ def test_each_scenario_has_a_panel_and_a_margin_has_its_bound() -> None:
     assert sum(dots) == len(margin.values)
 
 
+STOPS = "when near the robot shall within {} milliseconds satisfy stopped"
+
+
+def known(folder: Path, allowed: int) -> KnownRequirements:
+    """A project whose R1 allows so many milliseconds, beside evidence of 300 ms."""
+    one = project(folder, requirement("R1", STOPS.format(allowed)))
+    return known_requirements(one, {"R1": STOPS.format(300)})
+
+
+def test_a_latency_has_its_bound_if_the_sentence_is_still_that_of_the_evidence(
+    tmp_path: Path,
+) -> None:
+    trends = nights()
+    (late, *_) = [c for c in trends.comparisons if c.measure.ids == "R1"]
+    changed = known(tmp_path, 400)
+    assert (changed.titles, changed.limits) == ({"R1": "Title of R1"}, {})
+    drawn = chart(late, [*"abcdef"], trends.is_after, "id", changed)
+    assert [panel["bound"] for panel in drawn["panels"]] == [None, None, None]
+    same = known(tmp_path, 300)
+    assert same.limits == {"R1": 0.3}
+    drawn = chart(late, [*"abcdef"], trends.is_after, "id", same)
+    assert drawn["worse"] == "worse \N{UPWARDS ARROW}"
+    assert "; allowed 0.3 s; " in drawn["text"]
+    door = drawn["panels"][0]
+    # Five runs of each night: 0.21 s to 0.25 s in four nights, 0.2 s later in the other two.
+    assert [dot["y"] < door["bound"] for dot in door["dots"]] == [False] * 20 + [True] * 10
+
+
+def test_a_requirement_has_its_title(tmp_path: Path) -> None:
+    page = html(nights(), known=known(tmp_path, 300))
+    assert page.count("Title of R1") >= 3
+    assert "Title of R1 (R1): longest latency" in page
+
+
 def test_a_strip_is_read_without_colours() -> None:
     round_outcomes = [
         None,
@@ -134,9 +170,17 @@ def test_axe_finds_nothing_serious_and_nothing_is_too_wide(
     visits: Visits, tmp_path: Path, scheme: str, width: int
 ) -> None:
     path = tmp_path / "trends.html"
-    path.write_text(html(nights(HOSTILE)), encoding="utf-8")
+    text = html(nights(HOSTILE), "../{name}/report.html", known(tmp_path, 300))
+    path.write_text(text, encoding="utf-8")
     page = visits.open(path, width, scheme=scheme)
     assert page.title().startswith("Trends: ")
     assert page.evaluate("document.documentElement.scrollWidth") == width
     assert page.locator("svg.strip:visible").count() > 5
+    page.evaluate("document.querySelectorAll('details').forEach(e => e.open = true)")
+    assert page.locator("#numbers figure:visible").count() >= 2
+    assert page.evaluate("document.documentElement.scrollWidth") == width
+    page.locator(".heat td a").last.focus()
+    cell = page.locator(".heat td a").last.bounding_box()
+    assert cell is not None
+    assert 0 <= cell["x"] < width
     assert serious(page) == []

@@ -55,7 +55,7 @@ def test_lanes_have_what_the_evidence_has(tmp_path: Path) -> None:
     assert spans(first.lanes, "violated") == [("a.mcap", 1.0, 1.3, 1), ("a.mcap", 6.0, 6.1, 1)]
     assert spans(second.lanes, "violated") == [("b.mcap", 4.0, 4.2, 1)]
     assert second.lanes is not None
-    assert second.lanes.left_out == "No lane: 1 run without such a tick."
+    assert second.lanes.left_out == "1 run without such a tick: not drawn."
 
 
 @pytest.mark.slow

@@ -198,7 +198,7 @@ def test_each_object_has_what_is_known_of_it(text: str) -> None:
         "FT finite": "LAST R stopped",
         "PT": "H stopped",
         "Status": "approved",
-        "Coverage": "exercised, fail",
+        "Coverage": "exercised and violated",
         "Verdict": "violated",
         "Currency": "current",
         "Reasons": "b: violated, reason of R2\nit holds in 1 of 2 runs",

@@ -119,6 +119,19 @@ def test_causes_are_told_apart(known: Project, folder: Path) -> None:
     assert page["trust"][0] == "1 of 2 logs damaged or not readable: b."
 
 
+def test_a_violated_requirement_is_not_counted_among_those_without_a_verdict(
+    known: Project, folder: Path
+) -> None:
+    page = front(
+        known,
+        folder,
+        result(known, "violated", "R1", "a.mcap"),
+        result(known, "no data", "R1", "b.mcap", **DAMAGED),
+        result(known, "no data", "R2", "b.mcap", **DAMAGED),
+    )
+    assert "damaged log: 1 run, 1 requirement" in lines(page, "not shown")
+
+
 RUNS = ("walk-1", "walk-2", "stop-1", "stop-2")
 
 

@@ -222,7 +222,7 @@ def test_a_bound_and_what_was_measured(known: Project) -> None:
     }
     assert said(known, "R1", of) == (
         "`slow` was false from 0.8 s to 1.2 s (400 ms), but had to be true",
-        '`v` was 0.52 m/s, at most 0.5 m/s is allowed; `mode` was "drive", `docking` is required',
+        '`v` was 0.52 m/s, must be at most 0.5 m/s; `mode` was "drive", must be `docking`',
     )
 
 
@@ -230,7 +230,7 @@ def test_an_answer_that_comes_too_late(known: Project) -> None:
     of = {"d": [(0, 1.0), *((t, 0.2) for t in range(500, 2000, 100))], "v": every(100, 7.0)}
     words, why = said(known, "R4", {**of, "mode": every(100, 0.0), "flag": every(100, 0.0)})
     assert words == "`still` was false from 0.5 s to 2.1 s, but had to be true by 0.8 s"
-    assert why == "`abs(v)` was 0.07 m/s, less than 0.01 m/s is allowed"
+    assert why == "`abs(v)` was 0.07 m/s, must be below 0.01 m/s"
 
 
 def test_a_sample_that_is_too_old_counts_as_declared(known: Project) -> None:

@@ -66,6 +66,15 @@ def test_a_size_is_given_round_and_exact(count: int | None, text: str) -> None:
     assert phrases.size(count) == text
 
 
+def test_counts_of_none_one_and_two_have_their_own_words() -> None:
+    counts = [phrases.times(count, "run") for count in (0, 1, 2)]
+    assert counts == ["0 runs", "1 run", "2 runs"]
+    counts = [phrases.times(count, "latency", "latencies") for count in (0, 1, 2)]
+    assert counts == ["0 latencies", "1 latency", "2 latencies"]
+    whole = [phrases.every(count, "run") for count in (0, 1, 2)]
+    assert whole == ["no run", "the only run", "all 2 runs"]
+
+
 def test_an_instant_is_universal_time() -> None:
     assert phrases.instant(1_700_000_000_041_200_000) == "2023-11-14 22:13:20.041 UTC"
     assert phrases.instant(None) == "not known"

@@ -190,6 +190,20 @@ def test_a_violation_has_its_picture_and_its_values(html: str) -> None:
     assert "vx = unknown" in text
 
 
+def test_a_violation_leads_to_its_log_where_a_viewer_is_configured(tmp_path: Path) -> None:
+    address = "https://logs.example.org/?log={log}&t={seconds}"
+    (tmp_path / "fretc.toml").write_text(f'viewer = "{address}"\n', encoding="utf-8")
+    known = project(tmp_path, R1)
+    events = [violation(14, 20, 11), violation(24, 30, 21)]
+    runs = [result(known, "violated", run='runs/a&"<b>.mcap', violations=events)]
+    links = [a for a in Page(as_html(report_of(known, tmp_path, *runs))).of("a") if "rel" in a]
+    start = "https://logs.example.org/?log=runs/a%26%22%3Cb%3E.mcap&t="
+    assert [(a["rel"], a["href"]) for a in links] == [
+        ("noreferrer", f"{start}2.400000000"),
+        ("noreferrer", f"{start}3.400000000"),
+    ]
+
+
 def test_colours_can_be_read_on_their_paper() -> None:
     css = (template_root() / "report" / "style.css.j2").read_text(encoding="utf-8")
     light, dark = re.findall(r"color-scheme: (?:light dark|dark)\W(.*?)\}", css, re.DOTALL)[:2]

@@ -11,7 +11,7 @@ from fretc.report.page import selection as choosing
 from fretc.report.page.selection import DETAILED, PICTURES, PageContent
 from fretc.report.page.selection import selection as chosen_of
 from tests.effort import some
-from tests.fretc.report.cases import as_html, report_of, result
+from tests.fretc.report.cases import as_html, moment, report_of, result
 from tests.fretc.report.cases import project as small_project
 
 
@@ -116,3 +116,20 @@ def test_the_worst_run_of_a_requirement_gets_its_details_first(
     (section,) = selection(build).by_anchor.values()
     assert [each.run_file for each in section.details] == ["violated.mcap"]
     assert [row.has_details for row in section.rows] == [True, False, True]
+
+
+def test_a_run_in_which_unknown_values_decided_is_drawn_before_runs_with_open_demands(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(choosing, "PICTURES", 1)
+    known = small_project(tmp_path)
+    unknown = {
+        "proposition": "near", "first_tick": 20, "last_tick": 29, "start_ns": 3 * 10**9,
+        "end_ns": 39 * 10**8, "start_s": 2.0, "end_s": 2.9, "signal": "clearance", "cause": "lost",
+    }  # fmt: skip
+    runs = [
+        result(known, "no data", run="a.mcap", open=[moment(90)]),
+        result(known, "no data", run="b.mcap", triggers=[], unknown_inputs=[unknown]),
+    ]
+    details = selection(report_of(known, tmp_path, *runs)).by_anchor["req-R1"].details
+    assert {each.run_file: len(each.timelines) for each in details} == {"a.mcap": 0, "b.mcap": 1}

@@ -156,7 +156,7 @@ def test_many_assumptions_are_drawn_as_one() -> None:
     around = ("C", *(each.id for each in assumed))
     top = Element("G", ElementKind.GOAL, "top", (), around)
     elements = grouped([top, Element("C", ElementKind.CONTEXT, "c"), *assumed])
-    assert [each.text for each in elements] == ["top", "9 assumptions, listed in part 6", "c"]
+    assert [each.text for each in elements] == ["top", "9 assumptions, listed below", "c"]
     assert len(elements[0].in_context_of) == 2
 
 

@@ -4,6 +4,7 @@ import pytest
 
 from compiler.files.records import replace
 from fretc.audit.evidence.schema import Hashes, Health, Moment, Result
+from fretc.audit.measurements.unknown_inputs import UnknownInput
 from fretc.report.model.pictures import SpanMark
 from fretc.report.pictures.timeline import DETAIL, answered, timelines
 from tests.fretc.audit.results import moment, violation
@@ -131,3 +132,31 @@ def test_latencies_belong_to_the_triggers_that_are_not_open() -> None:
 
 def test_latencies_that_fit_no_triggers_belong_to_none() -> None:
     assert answered(replace(EMPTY, triggers=at(1, 2), latencies=(0.5,))) == []
+
+
+def unknown_input(proposition: str, first: int, last: int) -> UnknownInput:
+    ends = (first * 10**8, last * 10**8, first / 10, last / 10)
+    return UnknownInput(proposition, first, last, *ends, signal="scan", cause="lost")
+
+
+def test_each_proposition_that_was_unknown_has_a_lane_with_its_stretches() -> None:
+    inputs = (unknown_input("near", 20, 29), unknown_input("fast", 25, 25))
+    (picture,) = timelines(
+        replace(EMPTY, unknown_inputs=(*inputs, unknown_input("near", 50, 50))), 0.1
+    )
+    lanes = {lane.name: lane.marks for lane in picture.lanes if lane.kind == "unknown"}
+    assert lanes == {
+        "near": (SpanMark(2.0, 3.0, 1), SpanMark(5.0, 5.1, 1)),
+        "fast": (SpanMark(2.5, 2.6, 1),),
+    }
+    assert picture.text == (
+        "From 0 s to 10 s: no tick with a trigger, `near` unknown (2 s to 3 s and 5 s to 5.1 s) "
+        "and `fast` unknown (2.5 s to 2.6 s)."
+    )
+
+
+def test_many_unknown_propositions_share_a_lane() -> None:
+    inputs = tuple(unknown_input(f"p{n}", 10 * n, 10 * n) for n in range(6))
+    (picture,) = timelines(replace(EMPTY, unknown_inputs=inputs), 0.1)
+    lanes = {lane.name: len(lane.marks) for lane in picture.lanes if lane.kind == "unknown"}
+    assert lanes == {"p0": 1, "p1": 1, "p2": 1, "other inputs": 3}

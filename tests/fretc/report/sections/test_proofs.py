@@ -99,7 +99,7 @@ def test_the_worst_claim_decides(tmp_path: Path) -> None:
         == "All audited requirements held, but verification found counterexamples."
     )
     assert overall["sentences"][1] == (
-        "Verification found a counterexample to Title of R1 (R1); part 4 lists the claims."
+        "Verification found a counterexample to Title of R1 (R1); their sections list the claims."
     )
 
 

@@ -80,7 +80,7 @@ def test_a_review_that_stands_is_named(tmp_path: Path) -> None:
         },
     }
     assert report["changes"] == []
-    assert only(report)["coverage"] == "exercised, pass"
+    assert only(report)["coverage"] == "exercised and shown"
 
 
 def test_what_changed_since_the_review_makes_the_requirement_suspect(tmp_path: Path) -> None:
@@ -195,11 +195,11 @@ def test_a_waiver_that_has_ended_covers_nothing(
 @pytest.mark.parametrize(
     ("text", "verdict", "state"),
     [
-        (R1, "satisfied", "exercised, pass"),
-        (R1, "violated", "exercised, fail"),
+        (R1, "satisfied", "exercised and shown"),
+        (R1, "violated", "exercised and violated"),
         (R1, "vacuous", "not exercised"),
-        (R1, "inconclusive", "exercised, open"),
-        (R1, "no data", "exercised, open"),
+        (R1, "inconclusive", "exercised, not decided"),
+        (R1, "no data", "exercised, not decided"),
         (R1, None, "not exercised"),
         (R1.replace("eventually satisfy stopped", "eventually satisfy gone"), None, "unbound"),
         (R1.replace("shall eventually", "shal eventually"), None, "unformalized"),
