@@ -21,6 +21,7 @@ from fretc.logs.signals.traces import WholeTicks, trace
 from fretc.logs.storage.log_names import path_of
 from fretc.play.starts import MOST, RecordedPlace, Start, Ticks
 from fretc.report.model.phrases import times
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from monitors.kernel import Column, Monitor, evaluate
 from monitors.kernel.stepping import literals_of
