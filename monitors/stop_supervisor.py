@@ -157,7 +157,7 @@ class StopSupervisor:
     def states(self) -> "tuple[State, ...]":
         """The status of each requirement; `obligation_pending` counts messages since the tick."""
         monitor = self._evaluator.monitor
-        read = zip(monitor.standings(), self._obligation_pending, monitor.must.marks())
+        read = zip(monitor.standings(), self._obligation_pending, monitor.certain.marks())
         return tuple(
             State(
                 standing.requirement,

@@ -211,11 +211,11 @@ class RecordedRun:
     def _signals(self, columns: Mapping[str, Column], ticks: int) -> tuple[int, ...]:
         """The monitor outputs for the certain and the possible value, as columns."""
         every = (1 << ticks) - 1
-        rails = [
-            self._monitor.columns(every, **literals_of(self._monitor, columns, every, doubt))
-            for doubt in (False, True)
+        approximations = [
+            self._monitor.columns(every, **literals_of(self._monitor, columns, every, is_possible))
+            for is_possible in (False, True)
         ]
-        return tuple(column & every for (signals,) in rails for column in signals)
+        return tuple(column & every for (signals,) in approximations for column in signals)
 
     def _rows(self, first: int, last: int) -> Iterator[Ticks]:
         """Consecutive equal ticks, with their count."""

@@ -64,7 +64,7 @@ class RequirementMonitors:
 
     def last_triggers(self) -> tuple[int | None, ...]:
         """For each requirement, the time of the last tick with a certain trigger."""
-        marks = (monitor.must.marks()[0] for monitor in self.monitors)
+        marks = (monitor.certain.marks()[0] for monitor in self.monitors)
         return tuple(self.ledger.time(mark.last) if mark.last >= 0 else None for mark in marks)
 
     def verdicts(self, cut: Mapping[str, Truth] | None, *, intact: bool) -> dict[str, str]:

@@ -206,7 +206,7 @@ def _tuple(names: Sequence[str]) -> str:
 def _slots(code: ProgramCode) -> list[str]:
     """The `__slots__` of the state, in natural order."""
     marks = {name for signals in code.requirements for name in marks_of(signals.prefix)}
-    names = {"doubt", "tick", *(cell.name for cell in code.cells), *marks}
+    names = {"is_possible", "tick", *(cell.name for cell in code.cells), *marks}
     return sorted(names, key=_natural)
 
 

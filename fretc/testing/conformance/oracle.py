@@ -89,7 +89,7 @@ class Oracle:
 
     def triggered(self) -> frozenset[str]:
         """The requirements that were triggered."""
-        marks = zip(self._rules, self._monitor.must.marks(), strict=True)
+        marks = zip(self._rules, self._monitor.certain.marks(), strict=True)
         return frozenset(requirement.id for requirement, mark in marks if mark.last >= 0)
 
 

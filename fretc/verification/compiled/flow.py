@@ -22,7 +22,7 @@ class Dependencies:
     """Dependencies of the readings of one requirement."""
 
     cells: frozenset[str]
-    """Cells of a rail, among other names."""
+    """Cells of an approximation, among other names."""
     inputs: frozenset[int]
     """Indices of propositions."""
 
@@ -54,7 +54,7 @@ class ExpressionForms:
     """Allowed elements of an expression, besides local truth values and numbers."""
 
     members: Mapping[tuple[str, str], Collection[str]]
-    """Prefixes of members, such as `rail` and `->`; and the members."""
+    """Prefixes of members, such as `approximation` and `->`; and the members."""
     signs: Collection[str]
     kept: Collection[str] = ()
     """Words that are not names of local truth values."""
@@ -185,7 +185,7 @@ class BlockFlow(Flow):
 
         Args:
             known: statements that fretc writes.
-            cells: all cells of a rail.
+            cells: all cells of an approximation.
             literals: all literals.
         """
         self.written = known

@@ -192,18 +192,18 @@ def _possible(
 def _first_differences(
     monitor: Monitor, columns: Mapping[str, Column], length: int
 ) -> tuple[int | None, ...]:
-    """For each requirement, the first tick at which the programs' signals differ, on a rail.
+    """For each requirement, the first tick at which an approximation of the programs differs.
 
     Propositions without a column are false.
     """
     every, places = (1 << length) - 1, range(len(monitor.REQUIREMENTS))
     columns = {**dict.fromkeys(monitor.PROPOSITIONS, _FALSE), **columns}
     try:
-        must, may = (
-            monitor.columns(every, **literals_of(monitor, columns, every, doubt))
-            for doubt in (False, True)
+        certain, possible = (
+            monitor.columns(every, **literals_of(monitor, columns, every, is_possible))
+            for is_possible in (False, True)
         )
-        beyond = [any(each >> length for each in (*must[i], *may[i])) for i in places]
+        beyond = [any(each >> length for each in (*certain[i], *possible[i])) for i in places]
     except Exception:
         return (length - 1,) * len(places)
     found: list[int | None] = [length - 1 if is_beyond else None for is_beyond in beyond]
@@ -211,8 +211,8 @@ def _first_differences(
     values = [truths(columns[name], length) for name in monitor.PROPOSITIONS]
     for tick in range(length):
         monitor.advance([tuple([column[tick] for column in values])])
-        for rail, expected in ((monitor.must, must), (monitor.may, may)):
-            signals = rail.signals()
+        for approximation, expected in ((monitor.certain, certain), (monitor.possible, possible)):
+            signals = approximation.signals()
             for place in [place for place in places if found[place] is None]:
                 now = [bool(column >> tick & 1) for column in expected[place]]
                 if [bool(value) for value in signals[place]] != now:

@@ -6,9 +6,9 @@ propositions and constants: `fretc.verification.monitor.text_check` checks that 
 so a step cannot depend on the number of the tick. The automaton defines verdicts for known values
 only. The other signals of a monitor (triggers, responses, open obligations, marks; all of them also
 with unknown values) are compared with the generated monitor, state by state
-(`fretc.verification.monitor.rails`), and its column program with the generated one, term by term
-(`fretc.verification.monitor.columns`); the generated text itself needs neither. The column program
-is also compared with the steps on random traces, some with unknown values.
+(`fretc.verification.monitor.approximations`), and its column program with the generated one, term
+by term (`fretc.verification.monitor.columns`); the generated text itself needs neither. The column
+program is also compared with the steps on random traces, some with unknown values.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from compiler.logic.claims import ClaimOutcome, ClaimTrace, not_checked, proved,
 from compiler.logic.orders import Exclusion
 from compiler.targets.python import monitor as target
 from compiler.targets.python.names import prefixes_of
-from fretc.verification.monitor import front_terms, rails
+from fretc.verification.monitor import approximations, front_terms
 from fretc.verification.monitor.columns import Disagreement, TermTable, Word, agreed
 from fretc.verification.monitor.equivalence import (
     DifferingTrace,
@@ -323,8 +323,8 @@ def _compared_with_generated(
         limit: maximum number of states.
     """
     names, count = atoms
-    if count > rails.MOST_PROPOSITIONS:
-        most = rails.MOST_PROPOSITIONS
+    if count > approximations.MOST_PROPOSITIONS:
+        most = approximations.MOST_PROPOSITIONS
         return not_checked(
             f"it is not the generated monitor, and {count} propositions, more than "
             f"{most}, are too many to compare both with unknown values"
@@ -332,21 +332,23 @@ def _compared_with_generated(
     reference = load("generated", generated)
     never = impossible_combinations(requirement)
 
-    def compare_without(more: Sequence[Exclusion]) -> rails.Equivalent | rails.Distinguished | None:
+    def compare_without(
+        more: Sequence[Exclusion],
+    ) -> approximations.Equivalent | approximations.Distinguished | None:
         most = min(limit, MOST_SEARCHED) if more else limit
         every = (*never, *more)
-        return rails.compared(monitor, place, reference, names[:count], most, every)
+        return approximations.compared(monitor, place, reference, names[:count], most, every)
 
     comparison, note = with_numeric_counterexample(
-        requirement, names[:count], rails.Distinguished, compare_without
+        requirement, names[:count], approximations.Distinguished, compare_without
     )
     match comparison:
         case None:
             return not_checked(f"with unknown values there are more than {limit} states")
-        case rails.Distinguished(word, signal):
+        case approximations.Distinguished(word, signal):
             fault = f"the generated monitor has another {signal}{noted(note)}"
             return _disagreement(names, word, fault)
-        case rails.Equivalent(states):
+        case approximations.Equivalent(states):
             terms = TermTable()
             if terms.of(text, place) == terms.of(generated, 0):
                 return states

@@ -53,7 +53,7 @@ def check_layout(
     Args:
         text: text of the library.
         written: text that fretc writes for the same requirements.
-        cells: fields of a rail.
+        cells: fields of an approximation.
         inputs: fields of the inputs.
         outcomes: fields of the outcomes.
 

@@ -111,7 +111,7 @@ Written = Callable[[], str | None]
 def of_text(text: str) -> Iterator[tuple[str, Written]]:
     """All mistakes in the logic of a text: in its cells, its tick, its signals and its columns.
 
-    A mistake in the tick of the rail is in the step, too, else the text is refused for that.
+    A mistake in the tick of `advance` is in the step, too, else the text is refused for that.
     """
     begun = text.index("\n", text.index(MARK))
     head, module = text[: begun + 1], ast.parse(text[begun:])

@@ -41,7 +41,7 @@ def signals(machine: Monitor, rows: list[dict[str, Any]]) -> list[tuple[Any, ...
     found = []
     for row in rows:
         machine.advance([row])
-        found.append((*machine.must.signals(), *machine.may.signals()))
+        found.append((*machine.certain.signals(), *machine.possible.signals()))
     return found
 
 
