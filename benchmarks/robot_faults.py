@@ -276,7 +276,7 @@ def by_flips(subject: Subject) -> list[Run]:
     for each in requirements(subject):
         for atom in each.watched:
             bench = RequirementModel(each, (), (), Budget(60))
-            found = bench.doubt_of(bdd.true(), atom, ())
+            found = bench.dependence(bdd.true(), atom, ())
             if found is None:
                 continue
             letters, tick = found

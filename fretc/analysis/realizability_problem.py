@@ -87,7 +87,8 @@ class RealizabilityProblem:
         counted = [{each.id for each in there.counters(ids)} for there in (self, found)]
         mine, its = self.arena.alphabet, found.arena.alphabet
         is_known = all(
-            its.doubtful(role) <= mine.doubtful(role) for role in (Role.INPUT, Role.OUTPUT)
+            its.uncertain_atoms(role) <= mine.uncertain_atoms(role)
+            for role in (Role.INPUT, Role.OUTPUT)
         )
         return found if is_known and counted[0] == counted[1] else self
 
@@ -204,24 +205,24 @@ class RealizabilityProblem:
     @property
     def certain(self) -> tuple[RequirementCounter, ...]:
         """Counters of requirements for which the environment has only possible valuations."""
-        doubtful = self.arena.alphabet.doubtful(Role.INPUT)
-        if any(not doubtful.isdisjoint(_atoms(requirement)) for requirement in self.assumptions):
+        uncertain = self.arena.alphabet.uncertain_atoms(Role.INPUT)
+        if any(not uncertain.isdisjoint(_atoms(requirement)) for requirement in self.assumptions):
             return ()
         return self.counters(
             requirement.id
             for requirement in self.requirements
-            if doubtful.isdisjoint(_atoms(requirement))
+            if uncertain.isdisjoint(_atoms(requirement))
         )
 
     @property
     def of_inputs(self) -> str | None:
         """Why the environment has valuations that may be impossible; None: it has none."""
-        return self.arena.alphabet.doubts.get(Role.INPUT)
+        return self.arena.alphabet.uncertainties.get(Role.INPUT)
 
     @property
     def of_outputs(self) -> str | None:
         """Why the system has valuations that may be impossible; None: it has none."""
-        return self.arena.alphabet.doubts.get(Role.OUTPUT)
+        return self.arena.alphabet.uncertainties.get(Role.OUTPUT)
 
     @property
     def left_out(self) -> str | None:

@@ -173,7 +173,7 @@ def _pair(new: FormalizedRequirement, old: FormalizedRequirement, seconds: float
     word = found.word
     count = f"{word.ticks} tick{'' if word.ticks == 1 else 's'}"
     about = f"{new.id}: a shortest trace that distinguishes the two versions has {count}"
-    about += f"; its values may not be consistent: {found.doubt}" if found.doubt else ""
+    about += f"; its values may not be consistent: {found.uncertainty}" if found.uncertainty else ""
     rows = tuple((row.count, dict(row.values)) for row in word.rows)
     start = Start("Versions", f"{new.id}, before and now", about, (new.id,), rows)
     if word.ticks > MOST:

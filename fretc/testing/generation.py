@@ -77,9 +77,9 @@ def lost(requirement: FormalizedRequirement, why: str) -> Batch:
     )
 
 
-def _tested(requirement: FormalizedRequirement, kept: Ids, doubt: str) -> Tested:
+def _tested(requirement: FormalizedRequirement, kept: Ids, uncertainty: str) -> Tested:
     return Tested(
-        requirement.id, printed(requirement.written), requirement.fingerprint, kept, doubt
+        requirement.id, printed(requirement.written), requirement.fingerprint, kept, uncertainty
     )
 
 
@@ -158,7 +158,7 @@ class _Generation:
         names: set[str] = set()
         made = {run: self._test(run, purpose, names) for run, purpose in runs.items()}
         return Batch(
-            _tested(self._rule, self._runs.bench.others, self._runs.bench.doubt),
+            _tested(self._rule, self._runs.bench.others, self._runs.bench.uncertainty),
             tuple(made.values()),
             tuple(self._obligations(met, made)),
             tuple(self._mutants(told, made)),

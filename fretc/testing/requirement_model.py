@@ -172,7 +172,7 @@ class RequirementModel:
             case Polarity.BROKEN:
                 ends = (own.breaks, own.broken, -own.accepts)
             case Polarity.UNKNOWN:
-                raise AssertionError("`doubt_of` looks for those")
+                raise AssertionError("`dependence` looks for those")
             case _:
                 assert_never(polarity)
         return tuple(words.endings(end & lasts) for end in ends)
@@ -195,7 +195,7 @@ class RequirementModel:
             bdd.true(), words.endings((self._own.accepts ^ judged.accepts) & lasts)
         )
 
-    def doubt_of(
+    def dependence(
         self, goal: Function, atom: str, kept: Ids
     ) -> tuple[tuple[Letter, ...], int] | None:
         """A shortest run whose verdict depends on an atom at one tick of the goal, and that tick.
@@ -282,9 +282,9 @@ class RequirementModel:
         return runs, runs.lasting()
 
     @property
-    def doubt(self) -> str:
+    def uncertainty(self) -> str:
         """Why some valuations may be impossible; empty: all are possible."""
-        return self.alphabet.doubts.get(Role.OUTPUT, "")
+        return self.alphabet.uncertainties.get(Role.OUTPUT, "")
 
 
 def demands(requirement: FormalizedRequirement) -> Obligation:

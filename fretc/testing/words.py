@@ -236,9 +236,9 @@ def outcome(
 
 def _row(monitor: Monitor, word: RunColumns, tick: int) -> tuple[Truth, ...]:
     columns = (
-        Column(word.columns[name] & ~doubt, doubt)
+        Column(word.columns[name] & ~unknown, unknown)
         for name in monitor.PROPOSITIONS
-        for doubt in [word.unknown.get(name, 0)]
+        for unknown in [word.unknown.get(name, 0)]
     )
     return tuple(column.at(tick) for column in columns)
 

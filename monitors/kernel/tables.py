@@ -195,7 +195,7 @@ def _next_tick(value: Any, before: "int | None", place: str) -> int:
 _WHOLE = re.compile(r"\s*-?[0-9]{1,18}\s*")
 
 
-# Whole pieces of CSV, where they leave no doubt ------------------------------------------------
+# Whole pieces of CSV, where they are unambiguous ----------------------------------------------
 
 _CHARACTERS, _MOST_CHARACTERS = 1 << 12, 1 << 22
 """Characters of a piece per column, and the largest number; a piece ends at the end of a line."""
@@ -215,7 +215,7 @@ def _csv_pieces(
 ) -> "Iterator[Piece]":
     """CSV below its header, which ends in that line.
 
-    Where a piece leaves a doubt it is read row by row, and so is all that follows: that is slower,
+    Where a piece is ambiguous it is read row by row, and so is all that follows: that is slower,
     and finds what is wrong, and where.
     """
     tick: int | None = None
@@ -238,7 +238,7 @@ def _block(
     """Whole lines of CSV, which follow the row with that tick.
 
     Raises:
-        csv.Error, KeyError, ValueError: there is a doubt.
+        csv.Error, KeyError, ValueError: the lines are ambiguous.
     """
     width, has_tick = len(header), "tick" in header and "tick" not in names
     codes = None if has_tick else _digits(part, width)

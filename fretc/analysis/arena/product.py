@@ -45,8 +45,8 @@ class Fixed:
         self.inputs, self.outputs = tuple(alphabet.inputs), tuple(alphabet.outputs)
         self.legal, self.reachable = alphabet.legal, alphabet.reachable
         self.possible, self.certain = alphabet.possible, alphabet.certain
-        self.doubts, self.labels = alphabet.doubts, alphabet.labels
-        self.doubtful, self.open = alphabet.doubtful, alphabet.open
+        self.uncertainties, self.labels = alphabet.uncertainties, alphabet.labels
+        self.uncertain_atoms, self.open = alphabet.uncertain_atoms, alphabet.open
         self.is_refinable = alphabet.is_refinable
         self.memory = lambda: memory
 

@@ -205,18 +205,21 @@ class Cells:
         return None
 
     @property
-    def doubts(self) -> Mapping[Role, str]:
+    def uncertainties(self) -> Mapping[Role, str]:
         """Reasons for atoms outside the groups, and the reasons in `open`."""
-        return {**({} if self.open is None else {self._favoured: self.open}), **self._plain.doubts}
+        return {
+            **({} if self.open is None else {self._favoured: self.open}),
+            **self._plain.uncertainties,
+        }
 
     @property
     def labels(self) -> Mapping[int, str]:
         """The atom of each bit; a bit of a cell has none."""
         return {**self._plain.labels, **{n: a for each in self._used for n, a in each.labels()}}
 
-    def doubtful(self, role: Role) -> frozenset[str]:
+    def uncertain_atoms(self, role: Role) -> frozenset[str]:
         """Atoms for which a player has valuations that may be impossible."""
-        found = set(self._plain.doubtful(role))
+        found = set(self._plain.uncertain_atoms(role))
         if role is self._favoured:
             atoms = self._atoms.found.items()
             found |= {name for name, atom in atoms if atom.reads & self._atoms.before.keys()}

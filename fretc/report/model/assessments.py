@@ -326,8 +326,8 @@ def _probability(
         return ProbabilityAudit(estimation, tuple(reasons))
     results = [audit.result for audit in audits]
     runs = [(result.content, result.intact, result.trials or NO_TRIALS) for result in results]
-    doubts = about_estimation(estimation, requirement.sentence.probability, runs)
-    return ProbabilityAudit(estimation, tuple(dict.fromkeys((*stale, *doubts))))
+    suspicions = about_estimation(estimation, requirement.sentence.probability, runs)
+    return ProbabilityAudit(estimation, tuple(dict.fromkeys((*stale, *suspicions))))
 
 
 def _is_bound(requirement: FormalizedRequirement, declarations: Declarations | None) -> bool:
