@@ -28,7 +28,7 @@ from fretc.watch.watch import Watch
 from monitors.loading import executed
 
 ROOT = Path(__file__).parent.parent
-OWED = 20_000
+CALLS = 20_000
 """Calls of `standings` that are timed."""
 
 
@@ -74,9 +74,9 @@ def pending(folder: Path) -> float:
     running = module.MONITOR()
     running.advance([dict.fromkeys(running.PROPOSITIONS, True)])
     start = time.process_time()
-    for _ in range(OWED):
+    for _ in range(CALLS):
         [each.obligation_pending for each in running.standings()]
-    return (time.process_time() - start) / OWED * 1e9
+    return (time.process_time() - start) / CALLS * 1e9
 
 
 def main() -> None:

@@ -43,7 +43,7 @@ class StepResult:
     """The requirement is violated at this tick or before."""
     accepts: Function
     """FRET's verdict if the run ended here."""
-    owes: Function
+    obligation_pending: Function
     """An obligation is open, without a violation."""
 
 
@@ -168,7 +168,7 @@ class RequirementModel:
         ends: tuple[Function, ...]
         match polarity:
             case Polarity.KEPT:
-                ends = (own.accepts - own.owes, own.accepts)
+                ends = (own.accepts - own.obligation_pending, own.accepts)
             case Polarity.BROKEN:
                 ends = (own.breaks, own.broken, -own.accepts)
             case Polarity.UNKNOWN:

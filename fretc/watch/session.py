@@ -256,7 +256,7 @@ class Session:
             State(
                 standing.requirement,
                 self._verdict(standing),
-                owing,
+                is_pending,
                 trigger,
                 self._tick_time(standing.open),
                 self._tick_time(standing.deadline),
@@ -264,7 +264,7 @@ class Session:
                 if standing.requirement in monitors.counted
                 else self._tick_time(standing.first_violation),
             )
-            for standing, owing, trigger in read
+            for standing, is_pending, trigger in read
         )
 
     @property

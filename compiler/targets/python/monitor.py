@@ -115,8 +115,8 @@ def remark(requirement: FormalizedRequirement) -> Diagnostic | None:
     """
     sentence = requirement.sentence
     scope = sentence.scope.kind if sentence.scope else None
-    owed = TRAITS[obligation(sentence, requirement.ticks or 0).demand.kind]
-    later = Trait.UNMET in owed and Trait.LAST not in owed
+    traits = TRAITS[obligation(sentence, requirement.ticks or 0).demand.kind]
+    later = Trait.UNMET in traits and Trait.LAST not in traits
     if sentence.condition is None or not later or not s.ends_with_run(scope):
         return None
     return diagnostic(

@@ -305,7 +305,7 @@ def test_approximations_stay_two_where_a_violation_is_possible() -> None:
     assert machine.standings()[0].finite is None
 
 
-def test_nothing_is_known_to_be_owed_before_the_first_tick() -> None:
+def test_nothing_is_known_to_be_pending_before_the_first_tick() -> None:
     assert (
         monitor("whenever p sw shall eventually satisfy q").standings()[0].obligation_pending
         is None
@@ -313,7 +313,7 @@ def test_nothing_is_known_to_be_owed_before_the_first_tick() -> None:
 
 
 @pytest.mark.parametrize("sentence", SENTENCES[:4])
-def test_what_is_owed_holds_whatever_the_unknown_values_are(sentence: str) -> None:
+def test_what_is_pending_holds_whatever_the_unknown_values_are(sentence: str) -> None:
     """A definite answer is that of each completion; unknown values leave some of them open."""
     machine, known = monitor(sentence), monitor(sentence)
     seen = set()
