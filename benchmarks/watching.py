@@ -29,7 +29,7 @@ from monitors.loading import executed
 
 ROOT = Path(__file__).parent.parent
 CALLS = 20_000
-"""Calls of `standings` that are timed."""
+"""Calls of `statuses` that are timed."""
 
 
 @contextmanager
@@ -75,7 +75,7 @@ def pending(folder: Path) -> float:
     running.advance([dict.fromkeys(running.PROPOSITIONS, True)])
     start = time.process_time()
     for _ in range(CALLS):
-        [each.obligation_pending for each in running.standings()]
+        [each.obligation_pending for each in running.statuses()]
     return (time.process_time() - start) / CALLS * 1e9
 
 

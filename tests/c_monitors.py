@@ -223,7 +223,7 @@ def of_python(machine: Monitor, rows: Rows) -> Iterator[list[Outcome]]:
     machine.reset()
     for row in rows:
         machine.advance([row])
-        verdicts, standings = machine.verdicts(), machine.standings()
+        verdicts, statuses = machine.verdicts(), machine.statuses()
         approximations = [
             [
                 *map(
@@ -237,9 +237,9 @@ def of_python(machine: Monitor, rows: Rows) -> Iterator[list[Outcome]]:
             for approximation in (machine.certain, machine.possible)
         ]
         yield [
-            Outcome(certain, possible, str(verdict), standing.finite, standing.obligation_pending)
-            for certain, possible, verdict, standing in zip(
-                *approximations, verdicts, standings, strict=True
+            Outcome(certain, possible, str(verdict), status.finite, status.obligation_pending)
+            for certain, possible, verdict, status in zip(
+                *approximations, verdicts, statuses, strict=True
             )
         ]
 

@@ -90,14 +90,14 @@ def steps(machine: Monitor, columns: Mapping[str, Sequence[Truth]], place: int =
 
 def step(machine: Monitor, place: int = 0) -> Step:
     """What it tells now."""
-    standing = machine.standings()[place]
+    status = machine.statuses()[place]
     signals = zip(machine.certain.signals()[place], machine.possible.signals()[place], strict=True)
     return Step(
         machine.tick,
         machine.verdicts()[place],
-        standing.verdict,
-        standing.finite,
-        standing.first_violation,
+        status.verdict,
+        status.finite,
+        status.first_violation,
         *[truth(certain, possible) for certain, possible in signals],
     )
 

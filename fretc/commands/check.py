@@ -139,9 +139,9 @@ def _found(project: Project, files: _Files, *, analyze: bool) -> list[Diagnostic
         waivers = {id: waiver for id, waiver in known.items() if waiver.covers(today())}
         found.extend(wrong)
     assessed = assessments(project, summaries, lock, waivers, proofs, analyzed)
-    standings = [assessment.standing for assessment in assessed]
+    statuses = [assessment.review_status for assessment in assessed]
     if path is not None:
-        chains = [standing.chain for standing in standings]
+        chains = [status.chain for status in statuses]
         withdrawn = withdrawn_requirements(project.requirements, chains, lock)
         found.extend(withdrawal_warnings(withdrawn, path))
     found.extend(stale_evidence(assessed, summaries, files.evidence))
@@ -149,7 +149,7 @@ def _found(project: Project, files: _Files, *, analyze: bool) -> list[Diagnostic
     found.extend(reason for _, why in refusals(project) for reason in why)
     if analyze:
         found.extend(_together(project.sound, analyzed))
-    found.extend(warnings(project, standings, lock, results))
+    found.extend(warnings(project, statuses, lock, results))
     return found
 
 

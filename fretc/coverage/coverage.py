@@ -41,7 +41,7 @@ class RecordedSituation:
     """Index of a run → first tick that certainly shows the situation."""
     perhaps: Mapping[int, Moment]
     """Index of another run → first tick that may show the situation."""
-    standing: CoverageStatus
+    status: CoverageStatus
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,9 +57,9 @@ class RequirementCoverage:
     unmeasured: tuple[int, ...]
     """The indices of other runs with a result."""
 
-    def of(self, standing: CoverageStatus) -> tuple[RecordedSituation, ...]:
+    def of(self, status: CoverageStatus) -> tuple[RecordedSituation, ...]:
         """The situations with this status."""
-        return tuple(situation for situation in self.situations if situation.standing is standing)
+        return tuple(situation for situation in self.situations if situation.status is status)
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,14 +158,14 @@ class _Ledger:
     def _situation(self, one: Named) -> RecordedSituation:
         seen, perhaps = self._seen[one.key], self._perhaps[one.key]
         perhaps = {run: moment for run, moment in perhaps.items() if run not in seen}
-        standing = CoverageStatus.NEVER if self._measured else CoverageStatus.NOT_MEASURED
+        status = CoverageStatus.NEVER if self._measured else CoverageStatus.NOT_MEASURED
         if seen or perhaps:
-            standing = CoverageStatus.SEEN if seen else CoverageStatus.PERHAPS
-        return RecordedSituation(one.key, one.words, seen, perhaps, standing)
+            status = CoverageStatus.SEEN if seen else CoverageStatus.PERHAPS
+        return RecordedSituation(one.key, one.words, seen, perhaps, status)
 
 
 def counts(requirements: Iterable[RequirementCoverage]) -> Counter[CoverageStatus]:
     """The number of situations of all requirements by status."""
     return Counter(
-        situation.standing for requirement in requirements for situation in requirement.situations
+        situation.status for requirement in requirements for situation in requirement.situations
     )

@@ -22,7 +22,7 @@ from fretc.watch.sources.source import Arrival
 from fretish.clock import TimeSource
 from fretish.diagnostics.diagnostic import Diagnostic
 from monitors.kernel.columns import rows_of
-from monitors.kernel.stepping import Standing
+from monitors.kernel.stepping import RequirementStatus
 from monitors.kernel.verdicts import Truth
 from monitors.stop_supervisor import State
 from monitors.ticking import Ledger, is_jump
@@ -251,31 +251,31 @@ class Session:
             self._ahead if ahead and self._ahead is not None else monitors.obligation_pending()
         )
         pending = (None,) * len(pending) if self.interrupted else pending
-        read = zip(monitors.standings(), pending, monitors.last_triggers(), strict=True)
+        read = zip(monitors.statuses(), pending, monitors.last_triggers(), strict=True)
         return tuple(
             State(
-                standing.requirement,
-                self._verdict(standing),
+                status.requirement,
+                self._verdict(status),
                 is_pending,
                 trigger,
-                self._tick_time(standing.open),
-                self._tick_time(standing.deadline),
+                self._tick_time(status.open),
+                self._tick_time(status.deadline),
                 None
-                if standing.requirement in monitors.counted
-                else self._tick_time(standing.first_violation),
+                if status.requirement in monitors.counted
+                else self._tick_time(status.first_violation),
             )
-            for standing, is_pending, trigger in read
+            for status, is_pending, trigger in read
         )
 
     @property
     def _time_passed(self) -> int:
         return self.received - self._patience
 
-    def _verdict(self, standing: Standing) -> str:
+    def _verdict(self, status: RequirementStatus) -> str:
         """The verdict of a run that has ended; a run with missed messages satisfies nothing."""
-        if standing.requirement in self._final:
-            return self._final[standing.requirement]
-        verdict = self._monitors.audit_verdict(standing.requirement, str(standing.verdict))
+        if status.requirement in self._final:
+            return self._final[status.requirement]
+        verdict = self._monitors.audit_verdict(status.requirement, str(status.verdict))
         return "no data" if self._missed and verdict in ("satisfied", "vacuous") else verdict
 
     def _tick_time(self, tick: int | None) -> int | None:

@@ -210,7 +210,7 @@ _NONE = -2
 """No tick, and none before one."""
 
 
-class Standing(NamedTuple):
+class RequirementStatus(NamedTuple):
     """The verdict on a requirement if the trace ended now, and its reasons."""
 
     requirement: str
@@ -230,11 +230,11 @@ class Standing(NamedTuple):
     @property
     def owed(self) -> Truth:
         """The former name of `obligation_pending`; deprecated."""
-        _renamed("owed", "obligation_pending")
+        renamed("owed", "obligation_pending")
         return self.obligation_pending
 
 
-def _renamed(old: str, new: str) -> None:
+def renamed(old: str, new: str) -> None:
     """Warn the caller of a name that the next version does not have any more."""
     warnings.warn(f"`{old}` is now `{new}`", DeprecationWarning, stacklevel=3)
 
@@ -303,29 +303,41 @@ class Monitor:
         if content["possible"] is not None:
             self._part(possible)
 
-    def standings(self) -> "tuple[Standing, ...]":
-        """The standing of each requirement."""
+    def statuses(self) -> "tuple[RequirementStatus, ...]":
+        """The status of each requirement."""
         if self.tick < 0:
             nothing = (Verdict.NO_DATA, None, None, None, None, None)
-            return tuple(Standing(r.id, *nothing) for r in self.REQUIREMENTS)
+            return tuple(RequirementStatus(r.id, *nothing) for r in self.REQUIREMENTS)
         marks = self.certain.marks(), self.possible.marks()
         signals = self.certain.signals(), self.possible.signals()
-        return tuple(map(_standing, self.REQUIREMENTS, *marks, *signals))
+        return tuple(map(_status, self.REQUIREMENTS, *marks, *signals))
 
-    def standings_after(
+    def standings(self) -> "tuple[RequirementStatus, ...]":
+        """The former name of `statuses`; deprecated."""
+        renamed("standings", "statuses")
+        return self.statuses()
+
+    def statuses_after(
         self, rows: "Iterable[Row | Mapping[str, Truth]]"
-    ) -> "tuple[Standing, ...]":
-        """The standings after further rows, without stepping the monitor.
+    ) -> "tuple[RequirementStatus, ...]":
+        """The statuses after further rows, without stepping the monitor.
 
         Raises:
             KeyError, TypeError, ValueError: as `advance` does.
         """
-        return self._after(rows, self.standings)
+        return self._after(rows, self.statuses)
+
+    def standings_after(
+        self, rows: "Iterable[Row | Mapping[str, Truth]]"
+    ) -> "tuple[RequirementStatus, ...]":
+        """The former name of `statuses_after`; deprecated."""
+        renamed("standings_after", "statuses_after")
+        return self.statuses_after(rows)
 
     def obligation_pending_after(
         self, rows: "Iterable[Row | Mapping[str, Truth]]"
     ) -> "tuple[Truth, ...]":
-        """The `obligation_pending` of each of `standings_after(rows)`, but cheaper.
+        """The `obligation_pending` of each of `statuses_after(rows)`, but cheaper.
 
         Raises:
             KeyError, TypeError, ValueError: as `advance` does.
@@ -334,7 +346,7 @@ class Monitor:
 
     def owed_after(self, rows: "Iterable[Row | Mapping[str, Truth]]") -> "tuple[Truth, ...]":
         """The former name of `obligation_pending_after`; deprecated."""
-        _renamed("owed_after", "obligation_pending_after")
+        renamed("owed_after", "obligation_pending_after")
         return self.obligation_pending_after(rows)
 
     def _obligation_pending(self) -> "tuple[Truth, ...]":
@@ -504,20 +516,20 @@ def _picked(keys: "Sequence[Any]") -> "Callable[[Any], tuple[Any, ...]]":
     return itemgetter(*keys)
 
 
-def _standing(
+def _status(
     requirement: Requirement,
     certain_marks: Marks,
     possible_marks: Marks,
     certain: "Signals[bool]",
     possible: "Signals[bool]",
-) -> Standing:
+) -> RequirementStatus:
     broken = truth(certain_marks.broken >= 0, possible_marks.broken >= 0)
     violated = truth(certain_marks.violated >= 0, possible_marks.violated >= 0)
     opened = certain_marks.open if certain_marks.open >= 0 else None
     deadline = None
     if opened is not None and requirement.deadline_ticks is not None:
         deadline = opened + requirement.deadline_ticks
-    return Standing(
+    return RequirementStatus(
         requirement.id,
         at_end(
             violated,

@@ -258,4 +258,4 @@ def test_the_ticks_before_a_jump_are_judged(emitted: Any) -> None:
     judging.arrive("/x", 10**9, 6 * 10**9, SimpleNamespace(data=3.0))
     assert judging.resets == 1
     assert before.tick == 9
-    assert str(before.standings()[0].verdict) == "violated"
+    assert str(before.statuses()[0].verdict) == "violated"

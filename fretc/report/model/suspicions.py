@@ -14,7 +14,7 @@ from fretc.audit.measurements.confidence_intervals import SUPPORTED
 from fretc.audit.measurements.trials import Trials
 from fretc.traceability.chain import outdated
 from fretc.traceability.changes import in_words
-from fretc.traceability.lock import Review, ReviewedRequirement
+from fretc.traceability.lock import Review, ReviewStatus
 from fretish import syntax
 from monitors import kernel
 
@@ -85,11 +85,11 @@ def about_estimation(
         yield "a log is damaged, so it cannot support a probability"
 
 
-def since_review(standing: ReviewedRequirement) -> tuple[str, ...]:
+def since_review(status: ReviewStatus) -> tuple[str, ...]:
     """The changes since the review in one phrase; "" if the review is valid."""
-    if standing.review is None or not standing.is_suspect:
+    if status.review is None or not status.is_suspect:
         return ()
-    return (f"{changed_since(standing.review)}: {in_words(standing.changes)}",)
+    return (f"{changed_since(status.review)}: {in_words(status.changes)}",)
 
 
 def changed_since(review: Review) -> str:

@@ -25,7 +25,7 @@ from compiler.targets.python import monitor as target
 from fretc.verification.monitor.verifying import NotAMonitorError
 from fretish import syntax as s
 from monitors.kernel import Monitor
-from monitors.kernel.stepping import Standing
+from monitors.kernel.stepping import RequirementStatus
 from monitors.kernel.verdicts import Truth
 from monitors.loading import load
 from tests.effort import FULL
@@ -281,10 +281,10 @@ def telling(machine: Monitor, trace: dict[str, list[Truth]]) -> object:
     """All that a monitor tells of a trace: at each tick, and at its end of single demands."""
     machine.reset()
     names = tuple(machine.PROPOSITIONS)
-    told: list[tuple[Standing, ...]] = []
+    told: list[tuple[RequirementStatus, ...]] = []
     for tick in range(16):
         machine.advance([tuple(trace[name][tick] for name in names)])
-        told.append(machine.standings())
+        told.append(machine.statuses())
     columns = {name: trace[name] for name in names} or {"q": trace["q"]}
     return told, over(machine, columns)
 

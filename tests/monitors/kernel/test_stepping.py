@@ -43,7 +43,7 @@ def rows(machine: Monitor, count: int, seed: int, unknown: float = 0.1) -> Rows:
 
 
 def outputs(machine: Monitor) -> tuple[object, ...]:
-    return machine.tick, machine.verdicts(), machine.standings(), step(machine), machine.state()
+    return machine.tick, machine.verdicts(), machine.statuses(), step(machine), machine.state()
 
 
 @pytest.mark.slow
@@ -144,7 +144,7 @@ def test_a_step_of_many_propositions_is_that_of_few(count: int) -> None:
         step_of.step(**dict(zip(single.PROPOSITIONS.values(), row, strict=True)))
     whole.advance(table)
     assert outputs(single) == outputs(whole)
-    assert whole.standings()[0].first_violation == 3
+    assert whole.statuses()[0].first_violation == 3
 
 
 @pytest.mark.parametrize("count", [2, *WIDE])
@@ -203,7 +203,7 @@ def test_rows_may_be_given_by_name() -> None:
     table = rows(first, 50, 1)
     first.advance(table)
     second.advance([dict(zip(second.PROPOSITIONS, row, strict=True)) for row in table])
-    assert first.standings() == second.standings()
+    assert first.statuses() == second.statuses()
 
 
 @pytest.mark.parametrize("sentence", [*SENTENCES, "whenever !p sw shall immediately satisfy !q"])
@@ -302,13 +302,12 @@ def test_approximations_stay_two_where_a_violation_is_possible() -> None:
     machine = monitor("whenever p sw shall immediately satisfy q")
     machine.advance([(True, None), *[(False, True)] * 9_000])
     assert machine.possible is not machine.certain
-    assert machine.standings()[0].finite is None
+    assert machine.statuses()[0].finite is None
 
 
 def test_nothing_is_known_to_be_pending_before_the_first_tick() -> None:
     assert (
-        monitor("whenever p sw shall eventually satisfy q").standings()[0].obligation_pending
-        is None
+        monitor("whenever p sw shall eventually satisfy q").statuses()[0].obligation_pending is None
     )
 
 
@@ -321,12 +320,12 @@ def test_what_is_pending_holds_whatever_the_unknown_values_are(sentence: str) ->
         table = rows(machine, 5, seed, 0.2)
         machine.reset()
         machine.advance(table)
-        obligation_pending = machine.standings()[0].obligation_pending
+        obligation_pending = machine.statuses()[0].obligation_pending
         choices = [(True, False) if value is None else (value,) for row in table for value in row]
         for values in itertools.islice(itertools.product(*choices), 128):
             known.reset()
             known.advance(zip(*[iter(values)] * len(table[0]), strict=True))
-            assert obligation_pending in (None, known.standings()[0].obligation_pending)
+            assert obligation_pending in (None, known.statuses()[0].obligation_pending)
         seen.add(obligation_pending)
     assert seen == {True, False, None}
 
@@ -339,7 +338,7 @@ def test_approximations_stay_two_as_long_as_their_windows_differ(after: int) -> 
     for _ in range(after):
         machine.advance([(True, False)])
     machine.advance([(False, False)])
-    assert machine.standings()[0].finite is (None if after == 500 else False)
+    assert machine.statuses()[0].finite is (None if after == 500 else False)
     machine.reset()
     machine.advance([(True, None)])
     for _ in range(2_100):
@@ -464,8 +463,8 @@ def test_each_requirement_is_told_as_if_it_were_alone() -> None:
         for single in alone:
             single.advance([{name: named[name] for name in single.PROPOSITIONS}])
         assert together.verdicts() == tuple(single.verdicts()[0] for single in alone)
-        for found, single in zip(together.standings(), alone, strict=True):
-            assert found[1:] == single.standings()[0][1:]
+        for found, single in zip(together.statuses(), alone, strict=True):
+            assert found[1:] == single.statuses()[0][1:]
 
 
 def test_a_requirement_takes_five_slots_beside_its_cells() -> None:
@@ -504,9 +503,9 @@ def test_a_look_ahead_says_what_would_be_and_changes_nothing(sentence: str) -> N
         copy.restore(before)
         copy.advance(rows(machine, 4, 100 + seed))
         more = rows(machine, 4, 100 + seed)
-        assert machine.standings_after(more) == copy.standings()
+        assert machine.statuses_after(more) == copy.statuses()
         assert machine.obligation_pending_after(more) == tuple(
-            each.obligation_pending for each in copy.standings()
+            each.obligation_pending for each in copy.statuses()
         )
         assert machine.state() == before
         machine.advance(block)
@@ -519,9 +518,9 @@ def test_a_look_ahead_that_fails_changes_nothing() -> None:
     machine.advance(rows(machine, 5, 1))
     before = machine.state()
     with pytest.raises(TypeError):
-        machine.standings_after([("no truth", True)])  # type: ignore[list-item]
+        machine.statuses_after([("no truth", True)])  # type: ignore[list-item]
     assert machine.state() == before
-    assert machine.standings_after([]) == machine.standings()
+    assert machine.statuses_after([]) == machine.statuses()
     assert monitor(SENTENCES[0]).obligation_pending_after([]) == (None,)
 
 
@@ -529,7 +528,12 @@ def test_the_former_names_give_the_same_values_and_a_warning() -> None:
     machine = monitor("whenever p sw shall eventually satisfy q")
     machine.advance([(True, False)])
     with pytest.warns(DeprecationWarning, match="`owed` is now `obligation_pending`") as told:
-        assert machine.standings()[0].owed is True
+        assert machine.statuses()[0].owed is True
     assert told[0].filename == __file__
+    with pytest.warns(DeprecationWarning, match="`standings` is now `statuses`"):
+        assert machine.standings() == machine.statuses()
+    with pytest.warns(DeprecationWarning, match="is now `statuses_after`"):
+        later = machine.standings_after([(False, True)])
+    assert later == machine.statuses_after([(False, True)]) != machine.statuses()
     with pytest.warns(DeprecationWarning, match="is now `obligation_pending_after`"):
         assert machine.owed_after([(False, True)]) == (False,)

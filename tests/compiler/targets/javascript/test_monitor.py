@@ -16,7 +16,7 @@ from compiler.logic import formula as f
 from compiler.targets.javascript import monitor as target
 from compiler.targets.python.monitor import text as in_python
 from monitors.kernel import Monitor
-from monitors.kernel.stepping import Standing
+from monitors.kernel.stepping import RequirementStatus
 from monitors.kernel.verdicts import Signals, Truth, truth
 from monitors.loading import load
 from tests.compiler.targets.c.test_c_monitor import in_files
@@ -65,7 +65,7 @@ def told_by_python(machine: Monitor, word: Word) -> Iterator[list[dict[str, Any]
         machine.advance([tuple(row)])
         parts = (
             machine.verdicts(),
-            machine.standings(),
+            machine.statuses(),
             machine.certain.signals(),
             machine.possible.signals(),
         )
@@ -73,19 +73,19 @@ def told_by_python(machine: Monitor, word: Word) -> Iterator[list[dict[str, Any]
 
 
 def expected(
-    verdict: str, standing: Standing, certain: Signals[bool], possible: Signals[bool]
+    verdict: str, status: RequirementStatus, certain: Signals[bool], possible: Signals[bool]
 ) -> dict[str, Any]:
     both = {name: truth(*pair) for name, *pair in zip(SIGNALS, certain, possible, strict=True)}
     return {
         "verdict": verdict,
-        "atEnd": standing.verdict,
-        "finite": standing.finite,
+        "atEnd": status.verdict,
+        "finite": status.finite,
         "trigger": both["trigger"],
         "violation": both["violation"],
-        "obligationPending": standing.obligation_pending,
-        "firstViolation": standing.first_violation,
-        "open": standing.open,
-        "deadline": standing.deadline,
+        "obligationPending": status.obligation_pending,
+        "firstViolation": status.first_violation,
+        "open": status.open,
+        "deadline": status.deadline,
         "certain": {SIGNALS[name]: value for name, value in certain._asdict().items()},
         "possible": {SIGNALS[name]: value for name, value in possible._asdict().items()},
     }

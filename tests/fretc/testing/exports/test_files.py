@@ -174,8 +174,8 @@ def judgements(text: str) -> list[object]:
         monitor.reset()
         for row in word:
             monitor.advance([row])
-            (standing,) = monitor.standings()
-            found.append((*monitor.verdicts(), standing.finite, standing.first_violation))
+            (status,) = monitor.statuses()
+            found.append((*monitor.verdicts(), status.finite, status.first_violation))
     return found
 
 
