@@ -22,8 +22,8 @@ from compiler.files.records import UNSET
 from compiler.files.shell_quoting import is_sha256
 from compiler.logic.claims import Proof
 from fretc.analysis.evidence import AnalyzedSet
-from fretc.audit.evidence.basis import KINDS
 from fretc.audit.evidence.result_summaries import EvidenceSource, ResultSummary
+from fretc.audit.evidence.verdict_inputs import KINDS
 from fretc.traceability.lock import Review
 from fretc.traceability.waivers import Waiver
 from fretc.verification.reader import Proofs

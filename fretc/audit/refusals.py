@@ -8,7 +8,7 @@ from compiler.formalization.binding_agreement import unbound_propositions
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.project.project import Project
 from compiler.targets.python import monitor as monitors
-from fretc.audit.evidence.basis import Basis
+from fretc.audit.evidence.verdict_inputs import VerdictInputs
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Diagnostic, has_errors
 from fretish.diagnostics.messages import diagnostic
@@ -21,7 +21,7 @@ class RefusedRequirement:
 
     id: str
     sentence: str
-    basis: Basis = field(compare=False)
+    verdict_inputs: VerdictInputs = field(compare=False)
     """The verdict inputs, as of an audited requirement; of the wording as it is if it cannot be
     formalized."""
     why: tuple[Diagnostic, ...]

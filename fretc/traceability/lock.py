@@ -17,8 +17,8 @@ import tomli_w
 from compiler.files.dates import is_date, is_in_future
 from compiler.files.text_files import read as read_text
 from fretc.analysis.findings import RealizabilityVerdict
-from fretc.audit.evidence.basis import SENTENCE
 from fretc.audit.evidence.reader import VERDICTS
+from fretc.audit.evidence.verdict_inputs import SENTENCE
 from fretc.traceability.analyses import Realizability
 from fretc.traceability.chain import (
     ACCEPTANCE,

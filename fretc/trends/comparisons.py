@@ -245,8 +245,8 @@ def _measures(
     if not judged:
         return
     judged.sort(key=lambda one: (one.round, histories.runs[one.run].time or -1, one.run))
-    basis = judged[-1].basis
-    same = [outcome for outcome in judged if outcome.basis == basis]
+    verdict_inputs = judged[-1].verdict_inputs
+    same = [outcome for outcome in judged if outcome.verdict_inputs == verdict_inputs]
     for kind in (MeasureKind.LONGEST, MeasureKind.MEDIAN):
         numbers = [one.longest if kind is MeasureKind.LONGEST else one.median for one in same]
         values = [_value(histories.runs, *pair) for pair in zip(same, numbers, strict=True)]

@@ -24,7 +24,6 @@ from compiler.files.records import (
     Whole,
 )
 from compiler.files.records import field as record_field
-from fretc.audit.evidence.basis import KINDS
 from fretc.audit.evidence.probabilities import Estimated, Outcomes
 from fretc.audit.evidence.schema import (
     BindingsRecord,
@@ -39,12 +38,13 @@ from fretc.audit.evidence.schema import (
     Verdict,
     trials_of,
 )
+from fretc.audit.evidence.verdict_inputs import KINDS
 from fretc.audit.measurements.trials import Trials
 from fretish.bindings.canonical import digest
 from fretish.clock import period_of
 
 Recorded = tuple[str | UnsetType, ...]
-"""SHA-256 of each of `fretc.audit.evidence.basis.KINDS`; unset if it is unknown."""
+"""SHA-256 of each of `fretc.audit.evidence.verdict_inputs.KINDS`; unset if it is unknown."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,8 +25,8 @@ from mcap.writer import Writer
 from compiler.files.build_id import __version__
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.record import wording
-from fretc.audit.evidence.basis import BINDINGS, CLOCK, MONITOR, PARAMS, SENTENCE, TOPICS
 from fretc.audit.evidence.schema import Result
+from fretc.audit.evidence.verdict_inputs import BINDINGS, CLOCK, MONITOR, PARAMS, SENTENCE, TOPICS
 from fretc.audit.log_paths import ANNOTATIONS
 from fretc.audit.measurements.intervals import end_ns
 from fretc.audit.measurements.states import OPEN, UNKNOWN

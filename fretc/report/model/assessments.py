@@ -13,7 +13,6 @@ from compiler.project.project import Project
 from compiler.targets.python import monitor
 from fretc.analysis.evidence import AnalyzedSet
 from fretc.attestation.signatures import SignatureBook
-from fretc.audit.bases import bases
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.result_summaries import EvidenceSource, ResultSummaries, ResultSummary
 from fretc.audit.evidence.verdicts import (
@@ -27,6 +26,7 @@ from fretc.audit.evidence.verdicts import (
     severity,
 )
 from fretc.audit.measurements.trials import NO_TRIALS
+from fretc.audit.project_inputs import all_verdict_inputs
 from fretc.report.model.marks import Mark, verdict_mark
 from fretc.report.model.suspicions import AboutResults, about_estimation, since_review
 from fretc.traceability.artefacts import Product, monitors, products
@@ -278,8 +278,8 @@ def assessments(
     diagnostics = {failed.requirement: failed.diagnostic for failed in project.failed}
     results = summaries.by_requirement if summaries else {}
     products_of = {id: products(requirement) for id, requirement in requirements.items()}
-    basis_of = bases(project, monitors=monitors(products_of))
-    all_chains = chains(project, summaries, products_of, proofs, basis_of, analyzed)
+    inputs_of = all_verdict_inputs(project, monitors=monitors(products_of))
+    all_chains = chains(project, summaries, products_of, proofs, inputs_of, analyzed)
     status_of_each = review_statuses(all_chains, lock)
     audited_by = summaries.source.fretc if summaries else ""
     anchors: list[str] = []
@@ -287,8 +287,8 @@ def assessments(
     for entry, review_status in zip(project.requirements, status_of_each, strict=True):
         anchors.append(_anchor(entry.id, anchors))
         requirement = requirements.get(entry)
-        basis = basis_of[entry]
-        suspicions = AboutResults(basis, audited_by, formalized=requirement is not None)
+        verdict_inputs = inputs_of[entry]
+        suspicions = AboutResults(verdict_inputs, audited_by, formalized=requirement is not None)
         audits = tuple(
             SingleAudit(result, suspicions.of(result), place)
             for place, result in results.get(entry.id, ())

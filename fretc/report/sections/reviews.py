@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from compiler.project.project import Project
 from fretc.attestation.signatures import SignatureBook
-from fretc.audit.evidence.basis import KINDS
+from fretc.audit.evidence.verdict_inputs import KINDS
 from fretc.audit.evidence.verdicts import SUSPECT
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment

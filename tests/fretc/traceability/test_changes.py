@@ -20,7 +20,7 @@ from fretc.traceability.texts import as_table
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.command import Fretc, write
 from tests.effort import FULL, pairwise, some
-from tests.fretc.audit.evidence.test_basis import (
+from tests.fretc.audit.evidence.test_verdict_inputs import (
     BINDINGS,
     BY,
     CHANGES,

@@ -1,9 +1,9 @@
 """What has changed: single changes of a project, with and without a new audit.
 
-`python -m tests.fretc.audit.evidence.test_basis` prints them as a table: what a change touches,
-whose evidence is then of something else, and whose review no longer stands. What each command has
-to say is computed from the links below, which are written down here, and nowhere taken from the
-program.
+`python -m tests.fretc.audit.evidence.test_verdict_inputs` prints them as a table: what a change
+touches, whose evidence is then of something else, and whose review no longer stands. What each
+command has to say is computed from the links below, which are written down here, and nowhere taken
+from the program.
 """
 
 import json
