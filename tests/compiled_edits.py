@@ -312,7 +312,7 @@ JAVASCRIPT = Edits(
     (
         ("tick, 2, 2, not_q && not_p", "tick, 2, 3, not_q && not_p"),
         ("tick, 2, 2, not_q && not_p", "tick, 2, 2, not_q"),
-        ("{ runs: [], first: 0 }", "{ runs: [], first: 1 }"),
+        ("{ intervals: [], first: 0 }", "{ intervals: [], first: 1 }"),
         ("satisfiedForever: false,", "satisfiedForever: approximation.kept_since_1,"),
         ("  const since_1 = slide(", "  approximation.kept_since_1 = 0;\n  const since_1 = slide("),
     ),

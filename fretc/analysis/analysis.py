@@ -98,7 +98,7 @@ def analyze(
         try:
             found.extend(job.ask(found))
         except MemoryError:
-            found.append(job.lost("there is not enough memory for its decision diagrams"))
+            found.append(job.out_of_memory())
     return assembled(requirements, roles, assumptions, options, found)
 
 

@@ -75,8 +75,8 @@ def findings(jobs: Sequence[Job[F]], progress: Callable[[str], None]) -> Iterato
                 process.join()
                 answers.close()
             if number < len(jobs) and not is_stopped():
-                why = _FULL if is_full else _ending(process.exitcode or 0)
-                found.append(jobs[number].lost(why))
+                job, status = jobs[number], process.exitcode or 0
+                found.append(job.out_of_memory(_LIMIT) if is_full else job.lost(_ending(status)))
                 yield found[-1]
                 number += 1
         if is_stopped():
@@ -100,7 +100,7 @@ def _findings_here(jobs: Sequence[Job[F]], progress: Callable[[str], None]) -> I
                 found.append(finding)
                 yield finding
         except MemoryError:
-            found.append(job.lost("it took more memory than there is"))
+            found.append(job.out_of_memory())
             yield found[-1]
         except KeyboardInterrupt:
             for rest in jobs[number:]:
@@ -182,14 +182,11 @@ def _answer_all(connection: Connection, jobs: Sequence[Job[F]], found: Sequence[
         connection.send(None)
 
 
-_FULL = (
-    f"it took more than {MEMORY // 2**30} GiB of memory, or more decision diagrams than their "
-    "table holds"
-)
+_LIMIT = f"{MEMORY // 2**30} GiB"
 
 
 def _ending(status: int) -> str:
     """Why the process ended before its answer."""
     if exceeded_time(status) or was_killed(status):
         return "it exceeded its time limit"
-    return f"it took more than {MEMORY // 2**30} GiB of memory, or failed (exit status {status})"
+    return f"it took more memory than {_LIMIT}, or failed (exit status {status})"

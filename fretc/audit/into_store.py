@@ -332,12 +332,12 @@ class StoreWriter:
 
     def _finish(self, file: StoreFile) -> StoredAudit:
         head, rows = document(self._plan, (), ()), file.close()
-        store = Store(str(self.folder), "", file.path, head, rows)
+        store = Store(str(self.folder), "", head, file.path, rows)
         estimates = estimates_of(self._plan, (each for _, each in store.summaries()))
         if self._read:  # a mistyped name must not cost the evidence of the last audit
             head = replace(head, probabilities=estimates or UNSET)
             sha256 = complete(file.path, head, rows)
-            store = Store(str(self.folder), sha256, publish(file.path), head, rows)
+            store = Store(str(self.folder), sha256, head, publish(file.path), rows)
             for path in self._stopped:
                 remove_file(path)
             earlier_store.remove_tables(self.folder)

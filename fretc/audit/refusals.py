@@ -17,7 +17,7 @@ from fretish.documents import RequirementEntry
 
 @dataclass(frozen=True, slots=True)
 class RefusedRequirement:
-    """A requirement that no log can be judged by: all its results are *no data*."""
+    """A requirement by which no log can be evaluated: all its results are *no data*."""
 
     id: str
     sentence: str
@@ -69,6 +69,6 @@ def _unusable(project: Project, first: FormalizedRequirement) -> Diagnostic | No
 def _not_auditable(
     requirement: FormalizedRequirement, declarations: Declarations
 ) -> tuple[Diagnostic, ...]:
-    """The reasons why no log can be judged by a requirement; empty: one can."""
+    """The reasons why no log can be evaluated by a requirement; empty: one can."""
     refused = monitors.refuse(replace(requirement, pctl=None))
     return (*([refused] if refused else []), *unbound_propositions(requirement, declarations))

@@ -72,7 +72,7 @@ class Round:
     runs: int
     versions: tuple[str, ...]
     requirements: frozenset[str]
-    """Ids of the requirements that its runs were judged by."""
+    """Ids of the requirements by which its runs were evaluated."""
     selections: tuple[Selection, ...]
     """The selections of its evidence, if not all logs were audited."""
 

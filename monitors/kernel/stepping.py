@@ -74,22 +74,22 @@ class Approximation(Protocol):
         """The stored ticks of each requirement."""
 
 
-class _Run:
-    """Ticks without a gap at which `right` of a window held, and the run after it."""
+class _Interval:
+    """Ticks without a gap at which `right` of a window held, and the interval after it."""
 
     __slots__ = ("end", "next", "start")
 
     def __init__(self, start: int, end: int) -> None:
         self.start, self.end = start, end
-        self.next: _Run | None = None
+        self.next: _Interval | None = None
 
 
 class Window:
-    """`left S[lo,hi] right` in ticks; memory: the runs of `right` inside of the window.
+    """`left S[lo,hi] right` in ticks; memory: the intervals of `right` inside of the window.
 
-    Copies share the runs that have ended, so a copy costs the same for any number of them: they are
-    linked from the oldest to the youngest, a window goes no further than its own last one, and what
-    a fork adds branches off. The run that may still grow is `start` and `end`.
+    Copies share the intervals that have ended, so a copy costs the same for any number of them:
+    they are linked from the oldest to the youngest, a window goes no further than its own last one,
+    and what a fork adds branches off. The interval that may still grow is `start` and `end`.
     """
 
     __slots__ = ("branch", "end", "first", "hi", "last", "lo", "now", "start", "turn")
@@ -100,12 +100,12 @@ class Window:
         self._clear()
 
     def _clear(self) -> None:
-        """No run."""
+        """No interval."""
         self.start = self.end = _NONE
-        self.first: _Run | None = None
-        self.last: _Run | None = None
-        self.turn: _Run | None = None
-        self.branch: _Run | None = None
+        self.first: _Interval | None = None
+        self.last: _Interval | None = None
+        self.turn: _Interval | None = None
+        self.branch: _Interval | None = None
 
     def step(self, left: bool, right: bool) -> bool:
         """Whether right held `lo..hi` ticks ago, and left ever since."""
@@ -116,7 +116,7 @@ class Window:
         if right:
             if self.end != now - 1:
                 if self.end != _NONE:
-                    self._add(_Run(self.start, self.end))
+                    self._add(_Interval(self.start, self.end))
                 self.start = now
             self.end = now
         while self.first is not None and self.first.end < now - self.hi:
@@ -127,26 +127,26 @@ class Window:
             self.start = self.end = _NONE
         return 0 <= self.start <= now - self.lo
 
-    def _add(self, run: _Run) -> None:
-        """The run has ended."""
+    def _add(self, interval: _Interval) -> None:
+        """The interval has ended."""
         if self.last is None:
-            self.first = run
+            self.first = interval
         elif self.last is self.turn:
-            self.branch = run
+            self.branch = interval
         else:
-            self.last.next = run
-        self.last = run
+            self.last.next = interval
+        self.last = interval
 
-    def _after(self, run: _Run) -> "_Run | None":
-        if run is self.last:
+    def _after(self, interval: _Interval) -> "_Interval | None":
+        if interval is self.last:
             return None
-        return self.branch if run is self.turn else run.next
+        return self.branch if interval is self.turn else interval.next
 
-    def _drop(self, oldest: _Run) -> None:
+    def _drop(self, oldest: _Interval) -> None:
         self.first = self._after(oldest)
         if self.first is None:
             self.last = None
-        if oldest is self.turn:  # The other window needs the runs after it.
+        if oldest is self.turn:  # The other window needs the intervals after it.
             self.turn = self.branch = None
 
     def copy(self) -> "Window":
@@ -163,21 +163,21 @@ class Window:
         other.turn = self.last
         return other
 
-    def _runs(self) -> "Iterator[tuple[int, int]]":
+    def _intervals(self) -> "Iterator[tuple[int, int]]":
         """The oldest first."""
-        run = self.first
-        while run is not None:
-            yield run.start, run.end
-            run = self._after(run)
+        interval = self.first
+        while interval is not None:
+            yield interval.start, interval.end
+            interval = self._after(interval)
         if self.end != _NONE:
             yield self.start, self.end
 
     def state(self) -> "tuple[tuple[int, int], ...]":
-        """The runs, each as ages (oldest, youngest); ages above `hi` are all one."""
-        return tuple((min(self.now - a, self.hi), self.now - b) for a, b in self._runs())
+        """The intervals, each as ages (oldest, youngest); ages above `hi` are all one."""
+        return tuple((min(self.now - a, self.hi), self.now - b) for a, b in self._intervals())
 
     def is_like(self, other: "Window") -> bool:
-        """Whether two windows with equal clocks have equal states; shared runs are skipped."""
+        """Whether two windows with equal clocks have equal states; shared intervals are skipped."""
         mine, theirs, shared = self.first, other.first, other.turn
         youngest = (self.start, self.end), (other.start, other.end)
         if mine is None or theirs is None:
@@ -192,7 +192,7 @@ class Window:
         return mine is theirs is None and youngest[0] == youngest[1]
 
     def _same(self, one: "tuple[int, int]", other: "tuple[int, int]") -> bool:
-        """Whether two runs are equal within the window."""
+        """Whether two intervals are equal within the window."""
         reach = self.now - self.hi
         return one[1] == other[1] and max(one[0], reach) == max(other[0], reach)
 
@@ -202,7 +202,7 @@ class Window:
         self.now = self.hi
         for oldest, youngest in state:
             if self.end != _NONE:
-                self._add(_Run(self.start, self.end))
+                self._add(_Interval(self.start, self.end))
             self.start, self.end = self.now - oldest, self.now - youngest
 
 

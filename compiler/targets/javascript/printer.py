@@ -72,7 +72,7 @@ class JavaScriptPrinter:
             case Counter():
                 return str(cell.initial)
             case WindowMemory():
-                return "{ runs: [], first: 0 }"
+                return "{ intervals: [], first: 0 }"
             case _:
                 assert_never(cell)
 

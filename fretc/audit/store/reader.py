@@ -31,7 +31,7 @@ from compiler.files.records import (
 from fretc.audit.evidence.reader import EvidenceFile
 from fretc.audit.evidence.result_summaries import (
     CountedResult,
-    HeadProperties,
+    EvidenceSource,
     PartialRecord,
     ResultSummary,
     RunFacts,
@@ -92,22 +92,12 @@ class _Propositions(PartialRecord, frozen=True):
 
 
 @dataclass(frozen=True)
-class Store(HeadProperties):
-    """An `EvidenceSource`. The methods that read records raise `StoreError`."""
+class Store(EvidenceSource):
+    """Evidence in a store. The methods that read records raise `StoreError`."""
 
-    file: str
-    """The name of the store, as the user gave it."""
-    sha256: str
     path: Path
     """The container."""
-    document: EvidenceDocument
-    """The evidence without its results."""
     rows: Sequence[Row]
-
-    @property
-    def head(self) -> EvidenceDocument:
-        """The facts of the audit as a whole."""
-        return self.document
 
     def summaries(self) -> Iterator[tuple[int, ResultSummary]]:
         """The summary of each result with its index, in order; the results of a run adjoin."""
@@ -246,7 +236,7 @@ def opened(path: str) -> Store | EvidenceFile | Diagnostic:
     except (SchemaError, ValueError, TypeError) as error:
         return bad_store(path, f"cannot be read: {error}")
     name = str(Path(path))  # signatures are beside it
-    return Store(name, sha256, file, head, rows)
+    return Store(name, sha256, head, file, rows)
 
 
 def evidence(store: Store) -> EvidenceFile:

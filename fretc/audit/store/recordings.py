@@ -1,4 +1,4 @@
-"""The samples of logs, kept beside the evidence: what they are judged by may change without them.
+"""The samples of logs, kept beside the evidence: the requirements may change without them.
 
 A file for each log holds its `Recording`. It stands for the log as long as that is unchanged and
 the signals are declared as they were. Verdicts are taken from it, so it has a check that only the

@@ -53,17 +53,18 @@ function search({ outcome, cells, windows, ages, approximations, letters }) {
     return [
       cells.map((name) => approximation[name]),
       windows.map(([name, hi]) => {
-        const { runs, first } = approximation[name];
-        return runs.slice(first).map(([a, b]) => [Math.min(tick - a, hi), tick - b]);
+        const { intervals, first } = approximation[name];
+        return intervals.slice(first).map(([a, b]) => [Math.min(tick - a, hi), tick - b]);
       }),
       [marks.broken >= 0, marks.violationInevitable >= 0],
       ages.map((name) => (marks[name] < 0 ? -1 : Math.min(tick - marks[name], deadlineTicks + 1))),
     ];
   };
-  const load = (approximation, [values, runs, latched, old]) => {
+  const load = (approximation, [values, intervals, latched, old]) => {
     cells.forEach((name, i) => (approximation[name] = values[i]));
     windows.forEach(([name], i) => {
-      approximation[name] = { runs: runs[i].map(([a, b]) => [now - a, now - b]), first: 0 };
+      const all = intervals[i].map(([a, b]) => [now - a, now - b]);
+      approximation[name] = { intervals: all, first: 0 };
     });
     const [broken, violationInevitable] = latched.map((is) => (is ? 0 : -1));
     const marks = { broken, violationInevitable, last: -1, open: -1 };

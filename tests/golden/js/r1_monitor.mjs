@@ -65,24 +65,24 @@ function truth(certain, possible) {
   return certain === possible ? certain : null;
 }
 
-/** Whether `witness` held lo to hi ticks ago, and `guard` ever since; the window keeps runs of `witness`. */
+/** Whether `witness` held lo to hi ticks ago, and `guard` ever since; the window keeps intervals of `witness`. */
 function slide(window, tick, lo, hi, guard, witness) {
   if (!guard) {
-    window.runs = [];
+    window.intervals = [];
     window.first = 0;
   }
-  const { runs } = window;
+  const { intervals } = window;
   if (witness) {
-    const youngest = runs.at(-1);
+    const youngest = intervals.at(-1);
     if (youngest !== undefined && youngest[1] === tick - 1) youngest[1] = tick;
-    else runs.push([tick, tick]);
+    else intervals.push([tick, tick]);
   }
-  while (window.first < runs.length && runs[window.first][1] < tick - hi) window.first += 1;
-  if (window.first > 64 && 2 * window.first > runs.length) {
-    runs.splice(0, window.first);
+  while (window.first < intervals.length && intervals[window.first][1] < tick - hi) window.first += 1;
+  if (window.first > 64 && 2 * window.first > intervals.length) {
+    intervals.splice(0, window.first);
     window.first = 0;
   }
-  return window.first < runs.length && runs[window.first][0] <= tick - lo;
+  return window.first < intervals.length && intervals[window.first][0] <= tick - lo;
 }
 
 /** The remembered ticks of a requirement; -1: none. */
