@@ -42,9 +42,9 @@ class Series:
 
     def put(self, time: int, value: Reading) -> None:
         """Add a sample."""
-        place = bisect_right(self.times, time)
-        self.times.insert(place, time)
-        self.values.insert(place, value)
+        index = bisect_right(self.times, time)
+        self.times.insert(index, time)
+        self.values.insert(index, value)
 
     def forget(self, start: int) -> None:
         """Drop the samples before the one that is current at `start`."""
@@ -53,10 +53,10 @@ class Series:
 
     def next(self, done: int) -> "int | None":
         """The next time after `done` at which the value may change; None: never."""
-        place = bisect_right(self.times, done)
-        following = self.times[place] if place < len(self.times) else None
-        if place and self.max_age is not None:
-            expiry = self.times[place - 1] + self.max_age + 1
+        index = bisect_right(self.times, done)
+        following = self.times[index] if index < len(self.times) else None
+        if index and self.max_age is not None:
+            expiry = self.times[index - 1] + self.max_age + 1
             if expiry > done and (following is None or expiry < following):
                 return expiry
         return following
@@ -65,11 +65,11 @@ class Series:
         """The index range of the samples at a time, end excluded."""
         return bisect_left(self.times, time), bisect_right(self.times, time)
 
-    def at(self, place: int, time: int) -> Reading:
+    def at(self, index: int, time: int) -> Reading:
         """The value of a sample at a time; None if it is too old."""
-        if place < 0 or (self.max_age is not None and time - self.times[place] > self.max_age):
+        if index < 0 or (self.max_age is not None and time - self.times[index] > self.max_age):
             return None
-        return self.values[place]
+        return self.values[index]
 
 
 class _Persistence:
@@ -151,8 +151,8 @@ class PropositionEvaluator:
         steps: Sequence[tuple[int, Truth]] = self.steps(tick)
         if first is not None and steps:
             told = [
-                place
-                for place, (time, truth) in enumerate(steps)
+                index
+                for index, (time, truth) in enumerate(steps)
                 if truth is not None or (first[1] is not None and time >= first[1])
             ]
             steps = steps[told[0] if told else -1 :]

@@ -166,8 +166,8 @@ def _clearance(policy: Policy, ranges: "Sequence[Reading]", start: float, step: 
 def _gap(x: float, y: float, corners: "Sequence[tuple[float, float]]") -> float:
     """The distance from a point to a polygon; 0 inside."""
     inside, least = False, inf
-    for place, (x1, y1) in enumerate(corners):
-        x2, y2 = corners[(place + 1) % len(corners)]
+    for index, (x1, y1) in enumerate(corners):
+        x2, y2 = corners[(index + 1) % len(corners)]
         if (y1 > y) != (y2 > y) and x < x1 + (y - y1) / (y2 - y1) * (x2 - x1):
             inside = not inside
         ax, ay = x2 - x1, y2 - y1

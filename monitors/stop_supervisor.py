@@ -303,9 +303,9 @@ def _type(
     message: Any, fields: "Sequence[str]", topic: str, types: "Callable[[Any], Mapping[str, str]]"
 ) -> str:
     name = type(message).__name__
-    for place, field in enumerate(fields):
+    for index, field in enumerate(fields):
         known = types(message) if hasattr(message, field) else {}
         if field not in known:
-            raise ValueError(f"{name} of {topic} has no field {'.'.join(fields[: place + 1])}")
+            raise ValueError(f"{name} of {topic} has no field {'.'.join(fields[: index + 1])}")
         found, message = known[field], getattr(message, field)
     return found

@@ -201,16 +201,16 @@ def read(path: str) -> AnalyzedSet | Diagnostic:
     source, content = found
     mistake = _contradiction(content)
     if mistake:
-        place = Source(source.name, "").span()
+        span = Source(source.name, "").span()
         what = f"contradicts itself: {mistake}"
-        return diagnostic("bad_result_file", place, path=source.name, what=what, help=again)
+        return diagnostic("bad_result_file", span, path=source.name, what=what, help=again)
     return AnalyzedSet(source.name, sha256(source.text), content)
 
 
 def known(path: str | None) -> AnalyzedSet | Diagnostic | None:
     """The analysis of a file, or of the default file if it exists; None: there is none."""
-    place = path or default_path()
-    return read(place) if place is not None else None
+    file = path or default_path()
+    return read(file) if file is not None else None
 
 
 def default_path() -> str | None:

@@ -139,8 +139,8 @@ def drawn(play: Sequence[Mapping[str, object]], roles: Mapping[str, Role]) -> It
         shown = found[start : start + _WIDEST]
         widths = [max(len(each.head), *map(len, each.values)) for each in shown]
         yield _row("tick", [each.head for each in shown], width, widths)
-        for place, name in enumerate(names):
-            yield _row(_lane(name, roles), [each.values[place] for each in shown], width, widths)
+        for index, name in enumerate(names):
+            yield _row(_lane(name, roles), [each.values[index] for each in shown], width, widths)
 
 
 @dataclass(frozen=True, slots=True)

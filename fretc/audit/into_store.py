@@ -210,7 +210,7 @@ class StoreWriter:
         self._about = to_json(plain(about))
         self._authenticity = None if key is None else Authenticity(folder, self._about, key)
         self._file: StoreFile | None = None
-        self._places = {log: place for place, log in enumerate(logs)}
+        self._places = {log: index for index, log in enumerate(logs)}
         found = {log: self.earlier.find(log) for log in logs}
         self.known = {log: known for log, known in found.items() if known is not None}
         self.new = [log for log in logs if log not in self.known]

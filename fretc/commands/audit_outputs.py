@@ -133,7 +133,7 @@ def _is_evidence(path: Path) -> bool:
 
 def results(source: EvidenceSource) -> Iterator[Result]:
     """All results; those of a store are read in batches."""
-    places = [place for place, _ in source.summaries()]
+    places = [index for index, _ in source.summaries()]
     for start in range(0, len(places), _BATCH):
         yield from (result for _, result in source.details(places[start : start + _BATCH]))
 
@@ -151,10 +151,10 @@ def annotation_files(
     from fretc.audit.outputs.annotations import sidecars
     from fretc.audit.outputs.foxglove_layout import layout_file
 
-    found, place = [*bare(outcome.source, project)], Path(folder or "build/annotations")
+    found, out = [*bare(outcome.source, project)], Path(folder or "build/annotations")
     return {
-        **sidecars(found, project.formalized, place),
-        **layout_file(found, project.formalized, place),
+        **sidecars(found, project.formalized, out),
+        **layout_file(found, project.formalized, out),
     }
 
 

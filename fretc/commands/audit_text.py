@@ -159,8 +159,8 @@ def summary(subject: AuditText, status: int) -> dict[str, Any]:
 
 def _first_to_look_at(subject: AuditText, *, commands: bool = True) -> Iterator[str]:
     """The worst result, and the commands that show more; nothing if all are satisfied."""
-    place = subject.marks.worst
-    ((_, result),) = subject.source.details([place]) if place is not None else ((0, None),)
+    index = subject.marks.worst
+    ((_, result),) = subject.source.details([index]) if index is not None else ((0, None),)
     refuted = next((one for one in subject.estimates if one.answer == REFUTED), None)
     if refuted is not None and (result is None or longest(result) is None):
         id, where, details = refuted.requirement, f"{REFUTED} over all runs", [refuted.lines[0]]
@@ -172,8 +172,8 @@ def _first_to_look_at(subject: AuditText, *, commands: bool = True) -> Iterator[
     yield ""
     yield f"worst: {_name(subject, id)} {where}"
     yield from (f"  {line}" for line in details)
-    for place, command in enumerate(subject.places.commands(id) if commands else ()):
-        yield f"  {'more:' if place == 0 else '     '} {command}"
+    for index, command in enumerate(subject.places.commands(id) if commands else ()):
+        yield f"  {'more:' if index == 0 else '     '} {command}"
 
 
 def _details(result: Result, subject: AuditText) -> Iterator[str]:

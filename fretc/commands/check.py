@@ -192,8 +192,8 @@ def _fix(folder: str) -> None:
     files = () if isinstance(paths, Diagnostic) else fixed_files(paths)
     write_outputs({Path(file.path): file.text for file in files})
     for fix in (fix for file in files for fix in file.fixes):
-        place = f"{fix.span.source.name}:{fix.span.line}:{fix.span.column}"
-        print_status(visible(f"fixed {place}: {fix.change}"))
+        location = f"{fix.span.source.name}:{fix.span.line}:{fix.span.column}"
+        print_status(visible(f"fixed {location}: {fix.change}"))
     if files:
         print_status("")
 

@@ -202,8 +202,8 @@ def _json(path: str, verification: str | None) -> Signable:
     audited = read(path)
     if isinstance(audited, Diagnostic):
         fail(_as_error(audited))
-    place = verification or default_path()
-    return _evidence(audited, _proofs(place) if place is not None else None)
+    file = verification or default_path()
+    return _evidence(audited, _proofs(file) if file is not None else None)
 
 
 def _schema(source: Source) -> object:

@@ -95,12 +95,12 @@ def of_all_runs(
     names: list[str] = []
     known: dict[tuple[str, str], int] = {}
     places: dict[str, dict[int, int]] = {}
-    for place, summary in source.summaries():
+    for index, summary in source.summaries():
         key = summary.run, summary.content
         if key not in known:
             known[key] = len(names)
             names.append(summary.run)
-        places.setdefault(summary.requirement, {})[place] = known[key]
+        places.setdefault(summary.requirement, {})[index] = known[key]
     return tuple(names), of_requirements(source, places)
 
 
@@ -114,11 +114,11 @@ def of_requirements(
         places: requirement → index of each counted result → index of its run.
     """
     ledgers = {requirement.id: _Ledger(requirement) for requirement in source.requirements}
-    of_place = {place: id for id, some in places.items() for place in some}
-    for place, shown in source.situations(ledgers.keys()):
-        id = of_place.get(place)
+    of_place = {index: id for id, some in places.items() for index in some}
+    for index, shown in source.situations(ledgers.keys()):
+        id = of_place.get(index)
         if id in ledgers:
-            ledgers[id].add(places[id][place], shown)
+            ledgers[id].add(places[id][index], shown)
     return tuple(ledger.coverage() for ledger in ledgers.values())
 
 

@@ -109,8 +109,8 @@ def _status_words(one: RecordedSituation, runs: tuple[str, ...]) -> str:
 
 def _first(moments: Mapping[int, Moment], runs: tuple[str, ...]) -> str:
     run = min(moments)
-    place = f" of {runs[run]}" if len(runs) > 1 else ""
-    return f"at {seconds(moments[run].seconds)}{place}"
+    of_run = f" of {runs[run]}" if len(runs) > 1 else ""
+    return f"at {seconds(moments[run].seconds)}{of_run}"
 
 
 def _runs(covered: Coverage, *, every: bool) -> Iterator[Line]:
@@ -125,9 +125,9 @@ def _runs(covered: Coverage, *, every: bool) -> Iterator[Line]:
     if len(covered.runs) < 2:
         return
     listed = covered.runs if every else covered.runs[:_MOST_NAMED]
-    for place, name in enumerate(listed):
-        only = f", {alone[place]} of them that no other run shows" if alone[place] else ""
-        yield f"{name}: {count_of(shown[place], 'situation')}{only}", None
+    for index, name in enumerate(listed):
+        only = f", {alone[index]} of them that no other run shows" if alone[index] else ""
+        yield f"{name}: {count_of(shown[index], 'situation')}{only}", None
     if len(listed) < len(covered.runs):
         yield f"and {len(covered.runs) - len(listed):,} more runs: `-v` lists them", None
 
@@ -137,7 +137,7 @@ def _least(covered: Coverage) -> Iterator[Line]:
     least, runs = covered.least, covered.runs
     if len(runs) < 2 or not least.runs:
         return
-    names = [runs[place] for place in least.runs[:_MOST_NAMED]]
+    names = [runs[index] for index in least.runs[:_MOST_NAMED]]
     more = f" and {len(least.runs) - len(names)} more" if len(least.runs) > len(names) else ""
     how = "the smallest set" if least.is_exact else "a smaller set may exist"
     verb = "shows" if len(least.runs) == 1 else "show"

@@ -140,11 +140,11 @@ def _data(
 ) -> dict[str, Any]:
     front = made.front or InputAdapter({}, {})
     variables = [*front.inputs] or [*made.propositions]
-    places = {name: place for place, name in enumerate(variables)}
+    places = {name: index for index, name in enumerate(variables)}
     reads = {name: [places[name]] for name in made.propositions if name in places}
     for name, compared in front.comparisons.items():
         reads[name] = [places[each] for each in compared.inputs]
-    ids = {requirement.id: place for place, requirement in enumerate(requirements)}
+    ids = {requirement.id: index for index, requirement in enumerate(requirements)}
     return {
         "most": MOST,
         "period": _period(requirements[0]),
@@ -161,11 +161,11 @@ def _data(
         "variables": [_variable(name, front) for name in variables],
         "comparisons": [
             {
-                "proposition": place,
+                "proposition": index,
                 "label": visible(_written(name, requirements).strip("()")),
                 "limit": _limit(front.comparisons[name], places),
             }
-            for place, name in enumerate(made.propositions)
+            for index, name in enumerate(made.propositions)
             if name in front.comparisons
         ],
         "groups": [*_groups(made.propositions, front, places)],

@@ -175,8 +175,8 @@ class RecordedRun:
     def _window(self, first: int, last: int) -> tuple[int, int] | None:
         """First and last tick of a window that shows a violation; None if it would be too long."""
         end = min(self._ticks - 1, last + _AROUND, first + _AFTER)
-        place = bisect_right(self._outcome.triggers, first)
-        trigger = self._outcome.triggers[place - 1] if place else first
+        index = bisect_right(self._outcome.triggers, first)
+        trigger = self._outcome.triggers[index - 1] if index else first
         deadline_ticks = self._monitor.REQUIREMENTS[0].deadline_ticks or 0
         for begin, older in (
             (min(trigger, first - deadline_ticks), 0),

@@ -52,9 +52,9 @@ def located(runs: Sequence[str], folder: str | None) -> dict[str, str]:
     places: dict[str, str] = {}
     for run in runs:
         log = path_of(run)
-        place = log if folder is None else _below(Path(folder), log)
-        if place is not None and ("://" in place or Path(place).exists()):
-            places[run] = place
+        path = log if folder is None else _below(Path(folder), log)
+        if path is not None and ("://" in path or Path(path).exists()):
+            places[run] = path
     return places
 
 
@@ -161,13 +161,13 @@ def _integrity(result: Result) -> Integrity:
     return Integrity.FULL if checked is not None and not checked.by_index else Integrity.HASH
 
 
-def _prints(plan: Plan, place: str) -> frozenset[str]:
+def _prints(plan: Plan, location: str) -> frozenset[str]:
     """The SHA-256 values of a log: of the whole file, and of its summary."""
     signals = tuple(plan.declarations.signals)
     levels = (Integrity.INDEX, Integrity.HASH)
-    recordings = [read(place, plan.declarations, signals, level) for level in levels]
+    recordings = [read(location, plan.declarations, signals, level) for level in levels]
     hashes = [recording.sha256 for recording in recordings if not isinstance(recording, Diagnostic)]
-    return frozenset(filter(None, (*hashes, file_sha256(place))))
+    return frozenset(filter(None, (*hashes, file_sha256(location))))
 
 
 # The file as a whole ----------------------------------------------------------------------------

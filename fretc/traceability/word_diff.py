@@ -99,14 +99,14 @@ def _shared(before: str, after: str) -> int:
 def _tokens(text: str) -> list[str]:
     """Words and the white space between them; joined, they are the whole text."""
     found: list[str] = []
-    place = 0
-    while place < len(text) and len(found) <= _MOST_TOKENS:
-        match = _TOKEN.match(text, place)
+    start = 0
+    while start < len(text) and len(found) <= _MOST_TOKENS:
+        match = _TOKEN.match(text, start)
         assert match is not None, "a character is white space, a sign, or part of a word"
         known = match["number"] is None or _is_unit(match["unit"])
         end = match.end() if known else match.end("number")
-        found.append(text[place:end])
-        place = end
+        found.append(text[start:end])
+        start = end
     return found
 
 

@@ -269,8 +269,8 @@ def _margins(
     known = {one.run: one for one in same}
     found: dict[ComparedMeasure, dict[int, float]] = defaultdict(dict)
     for source, places in zip(histories.sources, histories.places, strict=True):
-        for place, thresholds in source.thresholds([requirement]):
-            run = places[place]
+        for index, thresholds in source.thresholds([requirement]):
+            run = places[index]
             for each in thresholds if run in known else ():
                 margin = 0.0 if each.comparison == "crossed" else each.margin
                 if margin is not None:

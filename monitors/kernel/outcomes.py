@@ -162,8 +162,8 @@ class _Record:
 
     def append(self, codes: bytes) -> None:
         """Append the signals of further ticks, tick by tick."""
-        for place, tape in enumerate(self._tapes):
-            tape.append(codes[place :: len(self._tapes)])
+        for index, tape in enumerate(self._tapes):
+            tape.append(codes[index :: len(self._tapes)])
 
     def columns(self) -> "Iterator[Signals[int]]":
         """The signals of each requirement."""

@@ -489,7 +489,7 @@ def rows_in_order(
     Raises:
         ValueError: `names` is not a permutation of `order`.
     """
-    places = {name: place for place, name in enumerate(names)}
+    places = {name: index for index, name in enumerate(names)}
     missing, unknown = {*order} - places.keys(), places.keys() - {*order}
     for wrong, why in ((missing, "is missing"), (unknown, "is no name of this monitor")):
         if wrong:

@@ -80,7 +80,7 @@ class Chart:
         places = tuple(self.inputs)
 
         def vectors(chosen_letters: Iterable[Letter]) -> list[tuple[bool, ...]]:
-            return sorted(tuple(letter[place] for place in places) for letter in chosen_letters)
+            return sorted(tuple(letter[index] for index in places) for letter in chosen_letters)
 
         terms = cover(vectors(chosen), vectors(set(self.letters) - chosen))
         return [{places[i]: value for i, value in term.items()} for term in terms]

@@ -94,7 +94,7 @@ def side_by_side(words: Iterable[tuple[Bit, ...]], count: int) -> Numbers:
         for number in (bit.now, bit.after, bit.later)
     }
     order = sorted(range(count), key=lambda number: (-weights.get(number, count), number))
-    places = {number: place for place, number in enumerate(order)}
+    places = {number: index for index, number in enumerate(order)}
     return chain((places[number] for number in range(count)), numbers(count))
 
 
@@ -104,14 +104,14 @@ def side_by_side(words: Iterable[tuple[Bit, ...]], count: int) -> Numbers:
 def equals(word: Word, number: int) -> Function:
     """Whether the bit vector equals the number, which fits."""
     found = bdd.true()
-    for place, bit in reversed([*enumerate(word)]):
-        found = (bit if number >> place & 1 else -bit) & found
+    for index, bit in reversed([*enumerate(word)]):
+        found = (bit if number >> index & 1 else -bit) & found
     return found
 
 
 def constant(number: int, like: Word) -> Word:
     """The number as a bit vector of the same length."""
-    return [bdd.true() if number >> place & 1 else bdd.false() for place in range(len(like))]
+    return [bdd.true() if number >> index & 1 else bdd.false() for index in range(len(like))]
 
 
 def successor(word: Word) -> Word:

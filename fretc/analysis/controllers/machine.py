@@ -161,9 +161,9 @@ def _last_resorts(game: Game) -> Iterator[Function]:
 def _chosen(relation: Function, outputs: Sequence[int], budget: Budget) -> dict[int, Function]:
     """One value of each output, over the other variables."""
     found: dict[int, Function] = {}
-    for place, output in enumerate(outputs):
+    for index, output in enumerate(outputs):
         budget.check()
-        others = bdd.cube(outputs[place + 1 :])
+        others = bdd.cube(outputs[index + 1 :])
         when = {value: bdd.at(relation, bdd.literal(output, value)) for value in (False, True)}
         possible = {value: bdd.exists(when[value], others) for value in when}
         found[output] = possible[True] - possible[False]

@@ -126,10 +126,10 @@ def state_topic(id: str) -> str:
 def _events(result: Result, requirements: Mapping[str, FormalizedRequirement]) -> Iterator[_Event]:
     """The events of one requirement; at equal times, causes come before effects."""
     id = result.requirement
-    place = requirements[id].entry.wording
+    span = requirements[id].entry.wording
 
     def event(ns: int, level: int, message: str) -> _Event:
-        where = {"name": id, "file": place.source.name, "line": place.line}
+        where = {"name": id, "file": span.source.name, "line": span.line}
         return _Event(max(0, ns), VERDICTS, {"level": level, "message": message, **where})
 
     answers = _longest_waits(result)

@@ -128,8 +128,8 @@ class SampleCache:
 
 
 def _checked(path: Path, data: bytes, key: bytes) -> bytes:
-    place = os.path.realpath(path).encode("utf-8", "surrogateescape")
-    return hmac.digest(key, SCHEMA.encode() + b"\0" + place + b"\0" + data, "sha256")
+    real_path = os.path.realpath(path).encode("utf-8", "surrogateescape")
+    return hmac.digest(key, SCHEMA.encode() + b"\0" + real_path + b"\0" + data, "sha256")
 
 
 def _reading(declarations: Declarations, wanted: Sequence[str], integrity: Integrity) -> str:

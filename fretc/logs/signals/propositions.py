@@ -103,8 +103,8 @@ def truth(expression: e.Expression, scope: NameValues) -> States:
         case e.Comparison(op, e.Name(id) as name, e.Word(text)) | e.Comparison(
             op, e.Word(text), e.Name(id) as name
         ):
-            place = Fraction(scope.words[id].index(text))
-            return _compared(op, term(name, scope), place, scope.length)
+            index = Fraction(scope.words[id].index(text))
+            return _compared(op, term(name, scope), index, scope.length)
         case e.Comparison(op, left, right):
             return _compared(op, term(left, scope), term(right, scope), scope.length)
         case e.Not(arg):

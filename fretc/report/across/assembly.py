@@ -224,7 +224,7 @@ def _numbers(
 def _known(details: Details, places: Collection[int]) -> Mapping[int, Known]:
     """Index of a result → its intervals and signals of words."""
     found = details.evidence.details(places) if details.evidence else ()
-    return {place: (stretches(result), word_lanes(result)) for place, result in found}
+    return {index: (stretches(result), word_lanes(result)) for index, result in found}
 
 
 def word_lanes(result: Result) -> tuple[WordLane, ...]:

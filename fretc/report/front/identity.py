@@ -99,7 +99,7 @@ def _distances(runs: Sequence[AuditedFile], evidence: EvidenceSource | None) -> 
         return {}
     anchors = {run.first: run.anchor for run in runs}
     found = evidence.details(anchors)
-    ways = ((anchors[place], result.course.way) for place, result in found if result.course)
+    ways = ((anchors[index], result.course.way) for index, result in found if result.course)
     return {anchor: _length(way) for anchor, way in ways if way is not None}
 
 

@@ -51,9 +51,9 @@ class Details:
         rows_at: dict[int, list[ResultRow]] = {}
         for row in rows:
             rows_at.setdefault(row.place, []).append(row)
-        for place, result in self.evidence.details(rows_at) if self.evidence else ():
+        for index, result in self.evidence.details(rows_at) if self.evidence else ():
             known = in_declared_units(result, self.project.declarations)
-            for row in rows_at[place]:
+            for row in rows_at[index]:
                 yield row, known
 
     def results(self, rows: Iterable[ResultRow]) -> Iterator[tuple[ResultRow, ResultView]]:
@@ -79,7 +79,7 @@ class Details:
         for group in self._groups(anchors):
             ids = {assessment.id for assessment in group}
             found = self.evidence.latencies(ids) if self.evidence else ()
-            latencies = {place: array("d", some) for place, some in found}
+            latencies = {index: array("d", some) for index, some in found}
             thresholds = self._thresholds(group)
             yield from ((assessment, latencies, thresholds) for assessment in group)
 

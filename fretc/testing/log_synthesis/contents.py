@@ -109,9 +109,9 @@ def _made(signal: Signal, field: SignalField, nominal: Fraction | str) -> Iterat
 
 def _contents(signal: Signal, field: SignalField, nominal: Fraction | str) -> Iterator[Content]:
     if isinstance(nominal, str):
-        place = signal.values.index(nominal) if nominal in signal.values else None
-        if place is not None:
-            yield signal.numbers[place] if signal.numbers else nominal
+        index = signal.values.index(nominal) if nominal in signal.values else None
+        if index is not None:
+            yield signal.numbers[index] if signal.numbers else nominal
         return
     if signal.reduce is Reduce.OUTLINE:
         yield from ([beam] for beam in _beams(signal, float(nominal)))

@@ -88,12 +88,12 @@ def without_comments(text: str) -> str:
 def _statements(body: Tokens) -> Iterator[Tokens]:
     """Statements up to each semicolon or brace; an `else` belongs to the preceding brace."""
     start, depth = 0, 0
-    for place, token in enumerate(body):
+    for index, token in enumerate(body):
         depth += {"(": 1, ")": -1}.get(token, 0)
-        after = body[place + 1] if place + 1 < len(body) else ""
+        after = body[index + 1] if index + 1 < len(body) else ""
         if (token in (";", "{") and depth == 0) or (token == "}" and after != "else"):
-            yield body[start : place + 1]
-            start = place + 1
+            yield body[start : index + 1]
+            start = index + 1
     if start < len(body):
         raise strange(body[start:])
 

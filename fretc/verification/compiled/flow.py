@@ -45,7 +45,7 @@ class CheckedLayout:
             for name in self.sources.get(waiting.pop(), frozenset()) - reached:
                 reached.add(name)
                 waiting.append(name)
-        inputs = (place for literal, place in self.literals.items() if literal in reached)
+        inputs = (index for literal, index in self.literals.items() if literal in reached)
         return Dependencies(frozenset(reached), frozenset(inputs))
 
 
@@ -94,19 +94,19 @@ class Flow:
         Raises:
             UnexpectedLayoutError: the expression contains anything else.
         """
-        names, place, grammar = set[str](), 0, self.grammar
-        while place < len(value):
-            name, after = (*value[place : place + 2], "")[:2]
-            if grammar.is_member(value[place : place + 3]):
-                names.add(value[place + 2])
-                place += 3
+        names, index, grammar = set[str](), 0, self.grammar
+        while index < len(value):
+            name, after = (*value[index : index + 2], "")[:2]
+            if grammar.is_member(value[index : index + 3]):
+                names.add(value[index + 2])
+                index += 3
             elif name in self._local and after not in _CALLS:
                 names.add(name)
-                place += 1
-            elif name in _JOINS and not _is_value(value[place - 1 : place]):
+                index += 1
+            elif name in _JOINS and not _is_value(value[index - 1 : index]):
                 raise strange(statement)
             elif name in grammar.signs or NUMBER.fullmatch(name):
-                place += 1
+                index += 1
             else:
                 raise strange(statement)
         return frozenset(names)

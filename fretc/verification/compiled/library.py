@@ -107,7 +107,7 @@ class Library:
         self._outcomes = (ctypes.c_uint8 * outcomes)()
         self._state = (ctypes.c_uint8 * size)()
         ctypes.memset(self._state, _GARBAGE, size)
-        self.order = [(i, place) for i, place in enumerate(plan.inputs) if place >= 0]
+        self.order = [(i, index) for i, index in enumerate(plan.inputs) if index >= 0]
         self._at = plan.outcome * outcome
         self._step = getattr(library, f"{file.base}_step")
         self._step.restype = None
@@ -169,8 +169,8 @@ class Library:
 
         An input without a value is false.
         """
-        for i, place in self.order:
-            self._inputs[place] = _CODES[letter[i]]
+        for i, index in self.order:
+            self._inputs[index] = _CODES[letter[i]]
         ctypes.memset(self._outcomes, _GARBAGE, len(self._outcomes))
         self._step(*self._arguments)
         values = _OUTCOME.unpack_from(self._outcomes, self._at)

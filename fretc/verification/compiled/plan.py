@@ -77,15 +77,15 @@ class ParsedSource:
         ids = [each.id for each in self.requirements]
         if requirement.id not in ids:
             raise UnexpectedLayoutError("the monitor is for other requirements")
-        place, own = ids.index(requirement.id), atoms(requirement)
-        part = self.form.part(self.outcomes[place])
+        index, own = ids.index(requirement.id), atoms(requirement)
+        part = self.form.part(self.outcomes[index])
         names = tuple(dict.fromkeys(name for each in self.requirements for name in each.watched))
         if not {names[i] for i in part.inputs} <= {*own}:
             raise UnexpectedLayoutError(
                 f"{requirement.id} depends on names that its sentence does not mention"
             )
         places = tuple(names.index(name) if name in names else -1 for name in own)
-        return RequirementPosition(part.cells, place, places, len(names), self.is_original)
+        return RequirementPosition(part.cells, index, places, len(names), self.is_original)
 
 
 class Machines(Protocol):

@@ -116,7 +116,7 @@ class PythonApproximation:
         for name in ("open", "last"):
             age = values.get(name, -1)
             setattr(self._approximation, self._names[name], self._now - age if age >= 0 else -1)
-        self._approximation.advance((tuple([letter[place] for place in self._order]),))
+        self._approximation.advance((tuple([letter[index] for index in self._order]),))
         return (*reading_of(self._approximation, self._deadline_ticks), True)
 
     def _mark(self, name: str) -> int:

@@ -173,7 +173,7 @@ def _without_delays(
             for values in _letters(requirement, names)
             for oldest in product((False, True), repeat=len(windows))
         ]
-        further = tuple(f"delay line {place}" for place in range(len(windows)))
+        further = tuple(f"delay line {index}" for index in range(len(windows)))
         free = PythonDelayed(right, left.lines)
         result = approximations.in_lock_step(left, free, letters, limit, (*NAMES, *further))
         if not isinstance(result, approximations.Equivalent):

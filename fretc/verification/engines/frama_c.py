@@ -130,8 +130,8 @@ def _unproved(report: str, asked: EvaInput) -> Iterator[str]:
         number = int(line)
         own = (file, function, kind) == (_DRIVER, asked.entry, "user assertion")
         if not (own and status == "Valid" and number in missing):
-            place = _AFTER if file == _DRIVER else f"at line {number}"
-            yield f"Eva finds no proof of `{words}` {place} ({kind}: {status.lower()})"
+            where = _AFTER if file == _DRIVER else f"at line {number}"
+            yield f"Eva finds no proof of `{words}` {where} ({kind}: {status.lower()})"
         missing.discard(number)
     if missing:
         yield f"Eva gives no result for {len(missing)} assertions"

@@ -66,16 +66,16 @@ def check_layout(
     given, own = LEXIS.tokens(text), LEXIS.tokens(written)
     (first, own_first), (stepped, own_stepped) = bodies(given, own, _FREE)
     same_but_constants(first, own_first, -2)
-    literals = {name: int(place) for name, place in _READ.findall(" ".join(own_stepped))}
+    literals = {name: int(index) for name, index in _READ.findall(" ".join(own_stepped))}
     step = _JavaScriptStep(frozenset(parts(own_stepped, ";")), {*cells} - {*windows})
     statements, own_statements = [*parts(stepped, ";")], [*parts(own_stepped, ";")]
-    place, own_place = _signals_at(statements), _signals_at(own_statements)
-    for statement in statements[:place]:
+    index, own_place = _signals_at(statements), _signals_at(own_statements)
+    for statement in statements[:index]:
         step.read(statement)
     step.conditions = []
-    told, own_told = statements[place][4:], own_statements[own_place][4:]
+    told, own_told = statements[index][4:], own_statements[own_place][4:]
     step.tell(outcomes, records(told, ("{",)), records(own_told, ("{",)))
-    same(_joined(statements[place + 1 :]), _joined(own_statements[own_place + 1 :]))
+    same(_joined(statements[index + 1 :]), _joined(own_statements[own_place + 1 :]))
     return CheckedLayout(step.sources, literals)
 
 

@@ -225,9 +225,9 @@ class ModuleRequirement:
         rows = []
         for letter in letters:
             row: list[Truth] = [False] * plan.width
-            for value, place in zip(letter, plan.inputs, strict=True):
-                if place >= 0:
-                    row[place] = value
+            for value, index in zip(letter, plan.inputs, strict=True):
+                if index >= 0:
+                    row[index] = value
             rows.append(row)
         order = {
             "outcome": plan.outcome,

@@ -49,7 +49,7 @@ class Distinguished:
 
 def compared(
     machine: Monitor,
-    place: int,
+    index: int,
     reference: Monitor,
     atoms: Sequence[str],
     limit: int,
@@ -59,7 +59,7 @@ def compared(
 
     Args:
         machine: monitor in the layout that fretc writes.
-        place: index of the requirement in the machine.
+        index: index of the requirement in the machine.
         reference: monitor of one requirement.
         atoms: order of the values in a valuation; the other propositions of the machine are false,
             and the requirement must not depend on them.
@@ -70,7 +70,7 @@ def compared(
     letters = only_possible(every, atoms, excluded)
     states = 0
     for is_possible in (False, True):
-        left = _Approximation(machine, place, is_possible, atoms)
+        left = _Approximation(machine, index, is_possible, atoms)
         right = _Approximation(reference, 0, is_possible, atoms)
         result = in_lock_step(left, right, letters, limit, _NAMES)
         if not isinstance(result, Equivalent):
@@ -91,10 +91,10 @@ class _Approximation:
     """An approximation that can be put into any state, always at the same tick."""
 
     def __init__(
-        self, monitor: Monitor, place: int, is_possible: bool, atoms: Sequence[str]
+        self, monitor: Monitor, index: int, is_possible: bool, atoms: Sequence[str]
     ) -> None:
         self._approximation: Any = monitor.APPROXIMATION(is_possible=is_possible)
-        self._place = place
+        self._place = index
         self._cells = ApproximationState(self._approximation)
         self._order = tuple(
             atoms.index(name) if name in atoms else None for name in monitor.PROPOSITIONS
@@ -179,16 +179,16 @@ def _from(
     pairs = [start]
     origins: list[tuple[int, Any] | None] = [None]
     visited.add(*start)
-    for place, (first, second) in enumerate(pairs):  # The list grows during the loop.
+    for index, (first, second) in enumerate(pairs):  # The list grows during the loop.
         for letter in letters:
             actual, expected = left.step(first, letter), right.step(second, letter)
             if actual != expected:
                 signal = next(n for n, a, b in zip(names, actual, expected, strict=True) if a != b)
-                return Distinguished((*word(origins, place), letter), signal)
+                return Distinguished((*word(origins, index), letter), signal)
             reached = left.save(), right.save()
             if visited.add(*reached):
                 pairs.append(reached)
-                origins.append((place, letter))
+                origins.append((index, letter))
         if len(pairs) > limit:
             return None
     return Equivalent(len(pairs))

@@ -44,12 +44,12 @@ class TermTable:
 
     _numbers: dict[tuple[object, ...], int] = field(default_factory=dict)
 
-    def of(self, text: str, place: int) -> tuple[int, ...]:
+    def of(self, text: str, index: int) -> tuple[int, ...]:
         """The terms of a requirement's signals, in their order.
 
         Args:
             text: text of a monitor, in the layout that fretc writes.
-            place: index of the requirement in the monitor.
+            index: index of the requirement in the monitor.
 
         Raises:
             KeyError, IndexError: a signal, or the requirement, is missing.
@@ -72,7 +72,7 @@ class TermTable:
                     names[name] = self._term(value, names)
         assert isinstance(last, ast.Return)
         assert isinstance(last.value, ast.Tuple)
-        signals = last.value.elts[place]
+        signals = last.value.elts[index]
         assert isinstance(signals, ast.Call)
         terms = {keyword.arg: self._term(keyword.value, names) for keyword in signals.keywords}
         return tuple(terms[name] for name in SIGNALS)
@@ -119,7 +119,7 @@ class Disagreement:
 def agreed(
     requirement: FormalizedRequirement,
     monitor: Monitor,
-    place: int,
+    index: int,
     atoms: Sequence[str],
     never: Sequence[Exclusion] = (),
 ) -> int | Disagreement:
@@ -128,7 +128,7 @@ def agreed(
     Args:
         requirement: the requirement.
         monitor: monitor with both programs.
-        place: index of the requirement in the monitor.
+        index: index of the requirement in the monitor.
         atoms: atoms on which the requirement depends.
         never: additional combinations that are excluded.
     """
@@ -136,7 +136,7 @@ def agreed(
     is_alone = len(monitor.REQUIREMENTS) == 1
     traces = _traces(monitor, bound, *((tuple(atoms), never) if is_alone or never else ((), ())))
     for columns, ticks in traces:
-        tick = ticks[place]
+        tick = ticks[index]
         if tick is not None:
             word = tuple(_rows({n: columns.get(n, _FALSE) for n in atoms}, tick + 1))
             return Disagreement(word)
@@ -213,10 +213,10 @@ def _first_differences(
         monitor.advance([tuple([column[tick] for column in values])])
         for approximation, expected in ((monitor.certain, certain), (monitor.possible, possible)):
             signals = approximation.signals()
-            for place in [place for place in places if found[place] is None]:
-                now = [bool(column >> tick & 1) for column in expected[place]]
-                if [bool(value) for value in signals[place]] != now:
-                    found[place] = tick
+            for index in [index for index in places if found[index] is None]:
+                now = [bool(column >> tick & 1) for column in expected[index]]
+                if [bool(value) for value in signals[index]] != now:
+                    found[index] = tick
     return tuple(found)
 
 

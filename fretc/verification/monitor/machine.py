@@ -56,7 +56,7 @@ class Stepped:
     def __init__(
         self,
         monitor: Monitor,
-        place: int,
+        index: int,
         atoms: Sequence[str],
         cells: Collection[str] | None = None,
     ) -> None:
@@ -64,13 +64,13 @@ class Stepped:
 
         Args:
             monitor: monitor in the layout that fretc writes; it is reset.
-            place: index of the requirement in the monitor.
+            index: index of the requirement in the monitor.
             atoms: order of the values in a valuation; at least the monitor's propositions.
             cells: cells on which the requirement depends; None: all.
         """
         monitor.reset()
         approximation: Any = monitor.certain
-        self._approximation, self._place = approximation, place
+        self._approximation, self._place = approximation, index
         self._alone = len(monitor.REQUIREMENTS) == 1
         self._step = _stepping(monitor, atoms)
         self._cells = ApproximationState(approximation, cells)

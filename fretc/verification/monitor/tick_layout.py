@@ -72,19 +72,19 @@ def check_advance(
         UnexpectedCodeError: it does something else.
     """
     body = body_of(node, "advance", "self, rows: 'Iterable[Sequence[Any]]'")
-    place = next((i for i, part in enumerate(body) if isinstance(part, ast.For)), None)
-    require(place is not None, node)
-    assert place is not None
-    loop = body[place]
+    index = next((i for i, part in enumerate(body) if isinstance(part, ast.For)), None)
+    require(index is not None, node)
+    assert index is not None
+    loop = body[index]
     assert isinstance(loop, ast.For)
-    require(place > 2, node)
-    carried = tuple(_carried(body[:place], approximation))
+    require(index > 2, node)
+    carried = tuple(_carried(body[:index], approximation))
     require(is_one_of(loop.iter, "rows") and not loop.orelse, loop)
     row = ", ".join(inputs.values()) + "," * (len(inputs) == 1)
     require(is_one_of(loop.target, f"({row})" if inputs else "_"), loop)
     require(bool(loop.body) and is_one_of(loop.body[0], "tick += 1"), loop)
     bound = _RowStatements(approximation, frozenset(carried)).check(loop.body[1:], inputs)
-    signals = _check_end(body[place + 1 :], approximation, carried, bound)
+    signals = _check_end(body[index + 1 :], approximation, carried, bound)
     return RowBehaviour(
         inlined(body),
         frozenset(
@@ -117,15 +117,15 @@ def inlined(body: Sequence[ast.stmt]) -> str:
     Args:
         body: body of `advance`, in the layout that `check_advance` requires.
     """
-    place = next(i for i, part in enumerate(body) if isinstance(part, ast.For))
-    loop = body[place]
+    index = next(i for i, part in enumerate(body) if isinstance(part, ast.For))
+    loop = body[index]
     assert isinstance(loop, ast.For)
-    carried = [ast.unparse(each).partition(" = ")[0] for each in body[3:place]]
+    carried = [ast.unparse(each).partition(" = ")[0] for each in body[3:index]]
     marks = [name for name in carried if name.endswith(tuple(f"_{mark}" for mark in MARKS))]
     others = {f"self.{name} = {name}" for name in ("tick", *marks)}
-    statements = [each for each in body[3:place] if ast.unparse(each).split(" = ")[0] not in marks]
+    statements = [each for each in body[3:index] if ast.unparse(each).split(" = ")[0] not in marks]
     statements += [each for each in loop.body[1:] if not _is_of_odd_values(each)]
-    statements += [each for each in body[place + 2 : -1] if ast.unparse(each) not in others]
+    statements += [each for each in body[index + 2 : -1] if ast.unparse(each) not in others]
     on_approximation = _OnApproximation(marks)
     lines = (
         ast.unparse(on_approximation.visit(copy.deepcopy(statement))) for statement in statements

@@ -107,10 +107,10 @@ def _compared(
     places = [i for i, each in enumerate(monitor.REQUIREMENTS) if each.id == requirement.id]
     if not places:
         return not_checked("the monitor is for other requirements")
-    place = places[0]
+    index = places[0]
     atoms = tuple(dict.fromkeys((*atoms_of(requirement.sentence), *monitor.PROPOSITIONS)))
     needed, cells = _needed(requirement, text, monitor, atoms)
-    machine = SlicedMonitor(Stepped(monitor, place, atoms, cells), len(atoms) - len(needed))
+    machine = SlicedMonitor(Stepped(monitor, index, atoms, cells), len(atoms) - len(needed))
     result = lock_step(requirement, machine, needed, limit)
     if isinstance(result, str):
         return not_checked(result)
@@ -119,7 +119,7 @@ def _compared(
     generated = target.text(requirement)
     if text != generated:
         (expected,) = load("generated", generated).REQUIREMENTS
-        if tuple(monitor.REQUIREMENTS[place]) != tuple(expected):
+        if tuple(monitor.REQUIREMENTS[index]) != tuple(expected):
             return not_checked(
                 "its verdicts are the same, but it states another sentence or deadline"
             )
@@ -130,7 +130,7 @@ def _compared(
         requirement,
         needed,
         Disagreement,
-        lambda more: agreed(requirement, monitor, place, needed, more),
+        lambda more: agreed(requirement, monitor, index, needed, more),
     )
     if isinstance(ticks, Disagreement):
         apart = f"its column program and its steps differ{noted(note)}"
@@ -138,7 +138,7 @@ def _compared(
     if text == generated or (whole is not None and _is_like(whole, text)):
         return _proved(result, ticks)
     states = _compared_with_generated(
-        requirement, generated, text, monitor, place, (atoms, len(needed)), limit
+        requirement, generated, text, monitor, index, (atoms, len(needed)), limit
     )
     return _proved(result, ticks, states) if isinstance(states, int) else states
 
@@ -306,7 +306,7 @@ def _compared_with_generated(
     generated: str,
     text: str,
     monitor: Monitor,
-    place: int,
+    index: int,
     atoms: tuple[Sequence[str], int],
     limit: int,
 ) -> int | ClaimOutcome:
@@ -317,7 +317,7 @@ def _compared_with_generated(
         generated: generated text.
         text: text of the monitor.
         monitor: monitor loaded from the text.
-        place: index of the requirement in the monitor.
+        index: index of the requirement in the monitor.
         atoms: all propositions, and how many of them, counted from the first, the requirement
             depends on.
         limit: maximum number of states.
@@ -337,7 +337,7 @@ def _compared_with_generated(
     ) -> approximations.Equivalent | approximations.Distinguished | None:
         most = min(limit, MOST_SEARCHED) if more else limit
         every = (*never, *more)
-        return approximations.compared(monitor, place, reference, names[:count], most, every)
+        return approximations.compared(monitor, index, reference, names[:count], most, every)
 
     comparison, note = with_numeric_counterexample(
         requirement, names[:count], approximations.Distinguished, compare_without
@@ -350,7 +350,7 @@ def _compared_with_generated(
             return _disagreement(names, word, fault)
         case approximations.Equivalent(states):
             terms = TermTable()
-            if terms.of(text, place) == terms.of(generated, 0):
+            if terms.of(text, index) == terms.of(generated, 0):
                 return states
             return not_checked(
                 "its column program is not the generated one: it agrees with the steps on random "
