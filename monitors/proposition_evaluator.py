@@ -134,12 +134,12 @@ class PropositionEvaluator:
     def steps(self, until: int) -> "list[tuple[int, Truth]]":
         """Advance to `until`, which is included; the new steps as (time, truth)."""
         self._ahead = None
-        found: list[tuple[int, Truth]] = []
+        steps: list[tuple[int, Truth]] = []
         while (time := self._next()) is not None and time <= until:
-            found += ((time, truth) for truth in self._at(time))
+            steps += ((time, truth) for truth in self._at(time))
             self._done = time
         self._done = max(self._done, until)
-        return found
+        return steps
 
     def value_at_tick(self, tick: int, first: "tuple[int, int | None] | None" = None) -> Truth:
         """The truth at a tick; ticks must be given in increasing order.
@@ -165,13 +165,13 @@ class PropositionEvaluator:
         other, steps = self._ahead
         steps += other.steps(ticks[-1])
         begin, before = 0, self._truth
-        found: list[Truth] = []
+        truths: list[Truth] = []
         for tick in ticks:
             end = bisect_left(steps, (tick + 1,))  # Less than each step of that time.
-            found.append(self._seen(steps[begin:end], before))
+            truths.append(self._seen(steps[begin:end], before))
             before = steps[end - 1][1] if end else before
             begin = end
-        return found
+        return truths
 
     def invalidate_lookahead(self, time: int) -> None:
         """Discard results ahead of a new sample of one of its signals."""

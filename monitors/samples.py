@@ -113,19 +113,19 @@ def _elements(
             return policy.quick(values, lambda x: _meant(policy, x), *row.values())
         except _UnknownSampleError:
             return None
-    found: list[Reading] = []
+    readings: list[Reading] = []
     for value in values:
         x = Single(value) if single else number(+value, policy.name)
         if x is not None and isfinite(x):
             row["x"] = x
             if policy.valid is None or policy.valid(row):
-                found.append(x)
+                readings.append(x)
                 continue
         try:
-            found.append(_meant(policy, x))
+            readings.append(_meant(policy, x))
         except _UnknownSampleError:
             return None
-    return found
+    return readings
 
 
 class _UnknownSampleError(Exception):

@@ -307,5 +307,5 @@ def _type(
         known = types(message) if hasattr(message, field) else {}
         if field not in known:
             raise ValueError(f"{name} of {topic} has no field {'.'.join(fields[: index + 1])}")
-        found, message = known[field], getattr(message, field)
-    return found
+        kind, message = known[field], getattr(message, field)
+    return kind

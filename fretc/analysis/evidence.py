@@ -195,10 +195,10 @@ class AnalyzedSet:
 def read(path: str) -> AnalyzedSet | Diagnostic:
     """Read and check a file of `fretc analyze`."""
     again = "analyze again: `fretc analyze FILE...`"
-    found = records.read(path, AnalysisDocument, "fretc analyze", again)
-    if isinstance(found, Diagnostic):
-        return found
-    source, content = found
+    file = records.read(path, AnalysisDocument, "fretc analyze", again)
+    if isinstance(file, Diagnostic):
+        return file
+    source, content = file
     mistake = _contradiction(content)
     if mistake:
         span = Source(source.name, "").span()
@@ -218,10 +218,10 @@ def default_path() -> str | None:
     return DEFAULT if Path(DEFAULT).exists() else None
 
 
-def _contradiction(found: AnalysisDocument) -> str:
+def _contradiction(document: AnalysisDocument) -> str:
     """Why the verdict does not follow from the findings; empty if it does."""
-    analysis = found.analysis
-    ids = found.requirements.keys()
+    analysis = document.analysis
+    ids = document.requirements.keys()
     named = {id for each in analysis.components for id in each.requirements}
     named |= {id for each in analysis.conflicts for id in each.requirements}
     if not named <= ids:

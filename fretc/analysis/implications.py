@@ -160,12 +160,12 @@ def vacuities(setting: RealizabilityProblem, budget: Budget) -> Iterator[Vacuity
     for counter in setting.arena.counters:
         others = [each.id for each in setting.arena.counters if each is not counter]
         try:
-            found = _vacuity(setting, requirements[counter.id], counter, others, budget.again())
+            vacuity = _vacuity(setting, requirements[counter.id], counter, others, budget.again())
         except OutOfTimeError as error:
             yield OpenQuestion(f"whether {counter.id} is ever triggered", str(error))
             continue
-        if found is not None:
-            yield found
+        if vacuity is not None:
+            yield vacuity
 
 
 def _vacuity(
@@ -212,18 +212,18 @@ def inconsistencies(
     if uncertainty is not None:
         yield OpenQuestion(question, uncertainty)
         return
-    found: list[frozenset[str]] = []
+    groups: list[frozenset[str]] = []
     try:
         alone = {counter.id: setting.runs((counter,), budget).lasting() for counter in counters}
         for members in _candidates(setting, counters):
             ids = frozenset(member.id for member in members)
-            if any(smaller <= ids for smaller in found):
+            if any(smaller <= ids for smaller in groups):
                 continue
-            if len(members) > _FEW and found:
+            if len(members) > _FEW and groups:
                 continue
             clash = _inconsistency(setting, members, alone, budget)
             if clash is not None:
-                found.append(ids)
+                groups.append(ids)
                 yield clash
     except OutOfTimeError as error:
         yield OpenQuestion(question, str(error))

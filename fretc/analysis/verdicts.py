@@ -157,11 +157,11 @@ def strategy(
     ids = tuple(requirement.id for requirement in setting.requirements)
     try:
         game = setting.game(setting.arena.counters, budget)
-        found = machine(game, game.solution(), budget)
+        controller = machine(game, game.solution(), budget)
         if form is ControllerFormat.PYTHON:
-            yield circuit(found, ids, number)
+            yield circuit(controller, ids, number)
         else:
-            yield mealy(found, ids, budget)
+            yield mealy(controller, ids, budget)
     except (UnsupportedError, NoMachineError, OutOfTimeError) as error:
         yield OpenQuestion(f"how can {', '.join(ids)} be satisfied?", str(error))
 
@@ -286,8 +286,8 @@ def _minimal(
         at_once = switched(there.game(there.counters(ids), budget), there.fresh)
         if at_once is not None:
             return map(chosen, at_once.cores(budget))
-    found = cores(len(ids), lambda members: _is_lost(there, chosen(members), budget), near)
-    return map(chosen, found)
+    conflicting = cores(len(ids), lambda members: _is_lost(there, chosen(members), budget), near)
+    return map(chosen, conflicting)
 
 
 _SHORT = 200

@@ -179,12 +179,12 @@ def proofs(file: Proofs) -> Statement:
 
 def analysis(file: AnalyzedSet) -> Statement:
     """The statement about an analysis of requirements."""
-    found = file.document.analysis
+    content = file.document.analysis
     says = {
         "requirements": {id: each.sha256 for id, each in file.document.requirements.items()},
-        "verdict": found.verdict,
-        "conflicts": [list(conflict.requirements) for conflict in found.conflicts],
-        "assumptions": {assumption.id: assumption.sentence for assumption in found.assumptions},
+        "verdict": content.verdict,
+        "conflicts": [list(conflict.requirements) for conflict in content.conflicts],
+        "assumptions": {assumption.id: assumption.sentence for assumption in content.assumptions},
     }
     return Statement(ANALYSIS, (SignedItem(ANALYSIS, Path(file.file).name, file.sha256),), says)
 

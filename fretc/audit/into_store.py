@@ -312,9 +312,9 @@ class StoreWriter:
         self._read += own.read
         self._pack(file, entry, with_command_labels(self._plan, own), log)
 
-    def _one(self, found: Diagnostic) -> Diagnostic:
+    def _one(self, diagnostic: Diagnostic) -> Diagnostic:
         """The diagnostic, or an equal one that is already in memory."""
-        return self._diagnostics.setdefault(found, found)
+        return self._diagnostics.setdefault(diagnostic, diagnostic)
 
     def _note(self, log: str, run: str, notes: tuple[Diagnostic, ...]) -> None:
         self._runs[log] = run

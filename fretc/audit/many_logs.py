@@ -357,9 +357,9 @@ def with_command_labels(plan: Plan, one: LogResult) -> LogResult:
 
 
 def _with_labels(
-    one: LogResult, found: Mapping[str, str], notes: Sequence[Diagnostic]
+    one: LogResult, labels: Mapping[str, str], notes: Sequence[Diagnostic]
 ) -> LogResult:
-    of_run = dict(sorted(found.items())) or UNSET
+    of_run = dict(sorted(labels.items())) or UNSET
     return replace(
         one,
         results=tuple(record_with(result, labels=of_run) for result in one.results),

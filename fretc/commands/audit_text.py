@@ -109,11 +109,11 @@ def lines(subject: AuditText, screen: Screen, *, every: bool) -> Iterator[Line]:
 
 def _situations(subject: AuditText) -> Iterator[Line]:
     """Number of situations that the runs exercised, and the command that lists them."""
-    _, found = of_all_runs(subject.source)
-    if any(each.situations for each in found):
+    _, situations = of_all_runs(subject.source)
+    if any(each.situations for each in situations):
         printed = subject.places.evidence == "-"
         more = "" if printed else f": `fretc coverage{subject.places.evidence_option}` lists them"
-        yield ((visible(f"{in_counts(found)}{more}"), None),)
+        yield ((visible(f"{in_counts(situations)}{more}"), None),)
 
 
 def _listed(subject: AuditText, titles: Mapping[str, str], screen: Screen) -> Iterator[Line]:

@@ -406,8 +406,8 @@ def _public(path: str) -> str:
     """Fingerprint of a public key."""
     from fretc.attestation.signers import trusted
 
-    found = or_fail(trusted(path))
-    return next((signer.key.fingerprint for signer in found.signers), "")
+    people = or_fail(trusted(path))
+    return next((signer.key.fingerprint for signer in people.signers), "")
 
 
 # What must be signed ---------------------------------------------------------------------------

@@ -159,9 +159,9 @@ def of_run(asked: MutationJob, log: str) -> RunSurvey | Diagnostic:
         if own.verdict != kernel.NO_DATA:
             known.add(batch.id)
         for mutant, other in zip(batch.mutants, others, strict=True):
-            found = difference(own, other)
-            if found is not None:
-                noticed[batch.id, mutant.key] = found
+            detected = difference(own, other)
+            if detected is not None:
+                noticed[batch.id, mutant.key] = detected
     return RunSurvey(frozenset(known), noticed)
 
 

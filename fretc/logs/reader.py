@@ -293,21 +293,21 @@ def _folder(
         return diagnostic("compressed_run", span, mode=about.compressed)
     paths = [os.path.join(about.path, name) for name in about.files]
     places = [Source(name_of(path), "").span() for path in paths]
-    found: list[FileContents | Diagnostic] = []
+    contents: list[FileContents | Diagnostic] = []
     for path, file in zip(paths, places, strict=True):
         sink.next_file()
         with opened(path) as log:
-            found.append(
+            contents.append(
                 log
                 if isinstance(log, Diagnostic)
                 else containers.part(log, sink, integrity, file, asked)
             )
-    parts = [part for part in found if isinstance(part, FileContents)]
+    parts = [part for part in contents if isinstance(part, FileContents)]
     spans = [part.span for part in parts if part.span is not None]
     if not spans:
-        wrong = [part for part in found if isinstance(part, Diagnostic)]
+        wrong = [part for part in contents if isinstance(part, Diagnostic)]
         return wrong[0] if wrong else diagnostic("empty_log", span)
-    damages = list(_losses(about, places, found))
+    damages = list(_losses(about, places, contents))
     if about.messages not in (None, sink.counted) and not damages:
         lost = (min(a for a, _ in spans), max(b for _, b in spans))
         what = f"its {METADATA} states {about.messages} messages, but its files hold {sink.counted}"
@@ -315,7 +315,7 @@ def _folder(
         damages.append((span, damage, lost if sink.counted < (about.messages or 0) else None))
     hashes = {
         name: part.sha256
-        for name, part in zip(about.files, found, strict=True)
+        for name, part in zip(about.files, contents, strict=True)
         if isinstance(part, FileContents)
     }
     notes = {note.message: note for part in parts for note in part.notes}
@@ -329,11 +329,11 @@ def _folder(
 
 
 def _losses(
-    about: Folder, places: Sequence[Span], found: Sequence[FileContents | Diagnostic]
+    about: Folder, places: Sequence[Span], contents: Sequence[FileContents | Diagnostic]
 ) -> Iterator[tuple[Span, Damage, Gap | None]]:
     """The damages of all files, in their order; an unreadable file is one damage."""
-    parts = [part if isinstance(part, FileContents) else None for part in found]
-    for i, (place, part) in enumerate(zip(places, found, strict=True)):
+    parts = [part if isinstance(part, FileContents) else None for part in contents]
+    for i, (place, part) in enumerate(zip(places, contents, strict=True)):
         before, after = around(parts, i)
         if isinstance(part, FileContents):
             for damage, gap in widened(part, before, after):

@@ -179,8 +179,8 @@ def _checks(
     evidence: EvidenceSource | None,
 ) -> Sequence[Diagnostic]:
     """The warnings of `fretc check`, without those about reviews."""
-    found = warnings(project, [assessment.review_status for assessment in assessed], lock, evidence)
-    return [warning for warning in found if warning.accepted or warning.code not in _OF_REVIEWS]
+    every = warnings(project, [assessment.review_status for assessment in assessed], lock, evidence)
+    return [warning for warning in every if warning.accepted or warning.code not in _OF_REVIEWS]
 
 
 _OF_REVIEWS = (Code.CHANGED_SINCE_REVIEW, Code.NOT_REVIEWED)

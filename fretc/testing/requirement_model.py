@@ -157,9 +157,9 @@ class RequirementModel:
                 endings, way = words.endings(endings.end & goal), bdd.true()
             else:
                 way = goal
-            found = words.shortest(way, endings)
-            if found is not None:
-                return found
+            letters = words.shortest(way, endings)
+            if letters is not None:
+                return letters
         return None
 
     def _endings(self, kept: Ids, polarity: Polarity) -> tuple[Endings, ...]:
@@ -224,10 +224,10 @@ class RequirementModel:
         once = -here | (goal - was)
         words, lasts = self._built(kept, False, more, letters=(number,), safe=once)
         ends = (self._own.accepts ^ judged.accepts) & (was | here) & lasts
-        found = words.shortest(bdd.true(), words.endings(ends))
-        if found is None:
+        letters = words.shortest(bdd.true(), words.endings(ends))
+        if letters is None:
             return None
-        return found, next(tick for tick, letter in enumerate(found) if letter[number])
+        return letters, next(tick for tick, letter in enumerate(letters) if letter[number])
 
     def _beside(
         self, requirement: FormalizedRequirement, alphabet: Alphabet, memory: Memory

@@ -138,10 +138,10 @@ def _uncertainties(suite: Suite) -> Iterator[Line]:
 
 
 def _by_situation(suite: Suite) -> list[list[GoalResult]]:
-    found: dict[tuple[str, str], list[GoalResult]] = {}
+    groups: dict[tuple[str, str], list[GoalResult]] = {}
     for obligation in suite.obligations:
-        found.setdefault((obligation.requirement, obligation.situation), []).append(obligation)
-    return [*found.values()]
+        groups.setdefault((obligation.requirement, obligation.situation), []).append(obligation)
+    return [*groups.values()]
 
 
 def _unmet(obligations: Sequence[GoalResult]) -> Iterator[Line]:

@@ -39,16 +39,16 @@ def warnings(
     pairs = zip(project.requirements, statuses, strict=True)
     sound = [each for requirement, each in pairs if requirement not in refused]
     new = unreviewed(project, sound) if lock is not None and lock.reviews else ()
-    found = project.answered((*checks(project, sound), *new))
+    diagnostics = project.answered((*checks(project, sound), *new))
     if not project.acceptances:  # No finding about the logs is accepted, so they need not be read.
-        return found
+        return diagnostics
     if has_errors(project.diagnostics):  # An error may hide the warning that an acceptance is for.
-        return found
+        return diagnostics
     logged = project.answered(_of_logs(evidence)) if evidence is not None else ()
-    every = (*project.diagnostics, *found, *logged)
+    every = (*project.diagnostics, *diagnostics, *logged)
     recorded = _recorded(evidence) if evidence is not None else None
     return (
-        *found,
+        *diagnostics,
         *(diagnostic for diagnostic in logged if diagnostic.accepted),
         *unused_acceptances(project.acceptances, every, project.declarations, recorded),
     )

@@ -138,8 +138,8 @@ def changes(
         causes: the nodes that make links of the requirement suspect; each of them is reported.
     """
     comparison = _Comparison(chain, prints, verdicts, texts)
-    found = [*comparison.of_texts(), *comparison.of_nodes()]
-    return (*found, *comparison.of_causes(causes, found))
+    all_changes = [*comparison.of_texts(), *comparison.of_nodes()]
+    return (*all_changes, *comparison.of_causes(causes, all_changes))
 
 
 def in_words(changes: Sequence[ReviewChange]) -> str:
@@ -238,16 +238,16 @@ class _Comparison:
         return ReviewChange(node, thing(node), None, None)
 
     def of_causes(
-        self, causes: Collection[ChainItem], found: Collection[ReviewChange]
+        self, causes: Collection[ChainItem], changes: Collection[ReviewChange]
     ) -> Iterator[ReviewChange]:
-        """Causes of suspect links that no change in `found` reports."""
+        """Causes of suspect links that no change in `changes` reports."""
         own = ChainItem(MEMBER, self._chain.requirement)
         for cause in causes:
-            if cause == own and found:
+            if cause == own and changes:
                 continue
             if cause not in self._nodes:
                 yield ReviewChange(cause, thing(cause), None, None, is_of_evidence=True)
-            elif not found:
+            elif not changes:
                 yield self._named(cause)
 
 

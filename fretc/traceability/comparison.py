@@ -173,7 +173,7 @@ def contradictions(status: ReviewStatus, project: Project) -> tuple[str, ...]:
             for field, words in drifted(requirement, requirement.declarations):
                 same = then is not None and getattr(then, field) == getattr(now, field)
                 fields.setdefault((words, same), []).append(_FIELDS[field])
-    found = [_statement(names, words, same) for (words, same), names in fields.items()]
+    statements = [_statement(names, words, same) for (words, same), names in fields.items()]
     for failed in project.failed:
         if failed.requirement.id == id:
             drifts = (
@@ -181,8 +181,8 @@ def contradictions(status: ReviewStatus, project: Project) -> tuple[str, ...]:
                 for diagnostic in failed.diagnostics
                 if diagnostic.code is Code.NUMBER_DRIFT
             )
-            found.extend(drift.message for drift in drifts)
-    return tuple(dict.fromkeys(found))
+            statements.extend(drift.message for drift in drifts)
+    return tuple(dict.fromkeys(statements))
 
 
 _FIELDS = {"title": "its title", "text": "its text", "params": "its `params`"}

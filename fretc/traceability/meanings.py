@@ -75,12 +75,12 @@ Key = tuple[str, str, str]
 
 def leaves(id: str, texts: ReviewedTexts) -> Mapping[Key, ReviewText]:
     """Each text of a requirement, in the order in which changes are listed."""
-    found = dict(_of_sentence(id, texts))
+    texts_of = dict(_of_sentence(id, texts))
     declarations = _declarations(texts.bindings) if texts.bindings else None
     if texts.bindings is not None:
-        found |= _of_bindings(id, texts.bindings, declarations)
+        texts_of |= _of_bindings(id, texts.bindings, declarations)
     parts = (_of_header(id, texts), _of_parents(texts), _of_audit(id, texts))
-    return found | dict(chain.from_iterable(parts))
+    return texts_of | dict(chain.from_iterable(parts))
 
 
 def _of_sentence(id: str, texts: ReviewedTexts) -> Iterator[tuple[Key, ReviewText]]:
@@ -183,13 +183,13 @@ def _of_bindings(
     id: str, bindings: BindingsTexts, declarations: Declarations | None
 ) -> Mapping[Key, ReviewText]:
     """The texts of clock and tables; if they cannot be read, a text is its own meaning."""
-    found: dict[Key, ReviewText] = {}
+    texts: dict[Key, ReviewText] = {}
     for name, table in bindings.proposition.items():
-        found |= _of_table(id, "proposition", name, table, _proposition(name, declarations))
+        texts |= _of_table(id, "proposition", name, table, _proposition(name, declarations))
     for name, table in bindings.signal.items():
-        found |= _of_table(id, "signal", name, table, _signal(name, declarations))
+        texts |= _of_table(id, "signal", name, table, _signal(name, declarations))
     for name, table in bindings.variable.items():
-        found |= _of_table(id, "variable", name, table, _variable(name, declarations))
+        texts |= _of_table(id, "variable", name, table, _variable(name, declarations))
     clock = declarations.clock if declarations else None
     for name in _CLOCK:
         node = (
@@ -201,8 +201,8 @@ def _of_bindings(
         meaning = getattr(clock, name) if clock and name != "tick" else meaning
         text = str(bindings.clock.get(name, ""))
         leaf = ReviewText(node, f"{name} of the clock", text, text if clock is None else meaning)
-        found["clock", "", name] = leaf
-    return found
+        texts["clock", "", name] = leaf
+    return texts
 
 
 def _of_table(

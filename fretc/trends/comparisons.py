@@ -292,6 +292,6 @@ def amount(number: float, unit: str) -> str:
     return value(float(f"{number:.3g}"), unit)
 
 
-def by_finding(found: Sequence[VersionComparison]) -> Mapping[ComparisonFinding, int]:
+def by_finding(comparisons: Sequence[VersionComparison]) -> Mapping[ComparisonFinding, int]:
     """The number of comparisons with each finding."""
-    return {kind: sum(one.finding is kind for one in found) for kind in ComparisonFinding}
+    return {kind: sum(one.finding is kind for one in comparisons) for kind in ComparisonFinding}

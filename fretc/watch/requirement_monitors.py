@@ -56,11 +56,11 @@ class RequirementMonitors:
             rows: further ticks, without an effect on the monitors.
         """
         ahead = tuple(rows)
-        found = (
+        results = (
             monitor.statuses_after(ahead) if ahead else monitor.statuses()
             for monitor in self.monitors
         )
-        return tuple(status.obligation_pending for statuses in found for status in statuses)
+        return tuple(status.obligation_pending for statuses in results for status in statuses)
 
     def last_triggers(self) -> tuple[int | None, ...]:
         """For each requirement, the time of the last tick with a certain trigger."""

@@ -103,12 +103,12 @@ class Session:
     @cached_property
     def reads(self) -> Mapping[str, tuple[str, ...]]:
         """For each requirement, the topics on which it depends."""
-        of, found = self._plan.declarations, {}
+        of, reads = self._plan.declarations, {}
         for monitor in self._monitors.monitors:
             names = {n for name in monitor.PROPOSITIONS for n in of.propositions[name].signals}
             topics = {of.signals[name].path.topic for name in names}
-            found[monitor.REQUIREMENTS[0].id] = tuple(sorted(topics))
-        return found
+            reads[monitor.REQUIREMENTS[0].id] = tuple(sorted(topics))
+        return reads
 
     @property
     def missed(self) -> tuple[Gap, ...]:

@@ -565,12 +565,12 @@ def literals_of(
     is_possible: bool,
 ) -> "dict[str, int]":
     """The columns of the literals on one approximation."""
-    found = {}
+    literals = {}
     for name, proposition, positive in monitor.LITERALS:
         true, unknown = columns[proposition]
         sure = true if positive else every ^ (true | unknown)
-        found[name] = sure | unknown if is_possible else sure
-    return found
+        literals[name] = sure | unknown if is_possible else sure
+    return literals
 
 
 def _copied(approximation: Approximation) -> Approximation:

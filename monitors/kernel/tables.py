@@ -141,10 +141,10 @@ def _json_rows(
 
 
 def _distinct(pairs: "list[tuple[str, Any]]") -> "dict[str, Any]":
-    found = dict(pairs)
-    if len(found) < len(pairs):
+    row = dict(pairs)
+    if len(row) < len(pairs):
         raise ValueError("a key comes twice")
-    return found
+    return row
 
 
 _JSON = json.JSONDecoder(object_pairs_hook=_distinct)

@@ -102,11 +102,11 @@ class Propositions:
         called = next((each for each in e.parts(part) if isinstance(each, e.Call)), None)
         if called is not None and called.name.lower() not in _ABSOLUTE:
             raise UnsupportedError(f"it calls `{called.name}`")
-        found = {self._roles[each.id] for each in e.names(part)}
-        if len(found) > 1:
+        players = {self._roles[each.id] for each in e.names(part)}
+        if len(players) > 1:
             both = f"`{name}` compares what the environment and the system choose"
             raise UnsupportedError(self._refused.get(name, both))
-        return found.pop() if found else Role.INPUT
+        return players.pop() if players else Role.INPUT
 
     @property
     def inputs(self) -> Sequence[int]:
@@ -142,11 +142,11 @@ class Propositions:
         return bdd.false() if self.uncertainties else self.possible
 
     def _possible(self, role: Role) -> Function:
-        found = bdd.true()
+        valid = bdd.true()
         for each in self._excluded:
             if all(name in self._numbers and self.role(name) is role for name, _ in each):
-                found = found - bdd.point({self._numbers[name]: value for name, value in each})
-        return found
+                valid = valid - bdd.point({self._numbers[name]: value for name, value in each})
+        return valid
 
     @property
     def labels(self) -> Mapping[int, str]:

@@ -80,8 +80,8 @@ class ComparisonGroup:
             free = [n for n in range(len(self._choice.formulas)) if not self._is_of_cell(n)]
             self._bits = {number: next(self._fresh) for number in free}
         number, is_so = self._choice.of[name]
-        found = self._formula(number)
-        return found if is_so else -found
+        function = self._formula(number)
+        return function if is_so else -function
 
     def _is_of_cell(self, number: int) -> bool:
         """Whether a formula reads only inputs, in a group of both players."""
@@ -91,11 +91,11 @@ class ComparisonGroup:
     def _formula(self, number: int) -> Function:
         if number in self._bits:
             return bdd.variable(self._bits[number])
-        found = bdd.false()
+        function = bdd.false()
         for index, cell in enumerate(self._cells):
             if next(iter(cell.patterns))[number]:  # they agree on what is of inputs
-                found = found | self._cell(index)
-        return found
+                function = function | self._cell(index)
+        return function
 
     def _cell(self, index: int) -> Function:
         return bdd.point({bit: bool(index >> i & 1) for i, bit in enumerate(self._cell_bits)})
@@ -115,10 +115,10 @@ class ComparisonGroup:
         """Possible cells, or input patterns."""
         if self._choice.role is Role.INPUT:
             return self._of_player()
-        found = bdd.false() if self._cells else bdd.true()
+        function = bdd.false() if self._cells else bdd.true()
         for index in range(len(self._cells)):
-            found = found | self._cell(index)
-        return found
+            function = function | self._cell(index)
+        return function
 
     @property
     def reachable(self) -> Function:
@@ -127,10 +127,10 @@ class ComparisonGroup:
             return bdd.true()
         if not self._cells:
             return self._of_player()
-        found = bdd.false()
+        function = bdd.false()
         for index, cell in enumerate(self._cells):
-            found = found | (self._cell(index) & self._some_of(cell.patterns))
-        return found
+            function = function | (self._cell(index) & self._some_of(cell.patterns))
+        return function
 
     def _of_player(self) -> Function:
         """Patterns of the player who chooses the numbers."""
@@ -147,10 +147,10 @@ class ComparisonGroup:
         return self.known | self._some_of(self._open)
 
     def _some_of(self, known: Iterable[Pattern]) -> Function:
-        found = bdd.false()
+        function = bdd.false()
         for pattern in known:
-            found = found | bdd.point({bit: pattern[n] for n, bit in self._bits.items()})
-        return found
+            function = function | bdd.point({bit: pattern[n] for n, bit in self._bits.items()})
+        return function
 
     def formulas(self) -> Iterator[tuple[int, Term]]:
         """Bit → its formula."""
@@ -193,10 +193,10 @@ class ComparisonGroup:
             return bdd.true()
         free = [choice.formulas[number] for number in self._bits]
         domain = z3.And(*choice.domains.values(), *given, *self._chosen(index))
-        found = bdd.false()
+        function = bdd.false()
         for pattern in patterns(free, domain, limit):
-            found = found | bdd.point(dict(zip(self._bits.values(), pattern, strict=True)))
-        return found
+            function = function | bdd.point(dict(zip(self._bits.values(), pattern, strict=True)))
+        return function
 
     def _place(self, letter: Mapping[int, bool]) -> int | None:
         """Index of the cell; 0 without cells; None: the valuation does not determine it."""

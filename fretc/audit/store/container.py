@@ -201,7 +201,7 @@ def _unfinished(folder: Path, number: int) -> Path:
 
 def _numbers(folder: Path) -> list[int]:
     names = os.listdir(folder) if folder.is_dir() else ()
-    return sorted(int(found[1]) for found in map(_UNFINISHED.fullmatch, names) if found)
+    return sorted(int(match[1]) for match in map(_UNFINISHED.fullmatch, names) if match)
 
 
 def written(path: Path, *, new: bool = False) -> sqlite3.Connection:
@@ -317,10 +317,10 @@ def record_of(connection: sqlite3.Connection, index: int) -> bytes:
     Raises:
         SchemaError: there is none.
     """
-    found = connection.execute("SELECT record FROM runs WHERE place = ?", (index,)).fetchone()
-    if found is None or not isinstance(found[0], bytes):
+    row = connection.execute("SELECT record FROM runs WHERE place = ?", (index,)).fetchone()
+    if row is None or not isinstance(row[0], bytes):
         raise SchemaError("a record is missing")
-    record: bytes = found[0]
+    record: bytes = row[0]
     return record
 
 

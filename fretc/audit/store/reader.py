@@ -153,8 +153,8 @@ class Store(EvidenceSource):
         for index, each in enumerate(self._parts(_Thresholds)):
             if each.requirement in requirements:
                 with self._valid():
-                    found = strict(each.thresholds, list[ThresholdRecord])
-                yield index, found
+                    thresholds = strict(each.thresholds, list[ThresholdRecord])
+                yield index, thresholds
 
     def situations(
         self, requirements: Collection[str]
@@ -164,8 +164,8 @@ class Store(EvidenceSource):
             if each.requirement in requirements:
                 raw = each.situations
                 with self._valid():
-                    found = UNSET if raw is UNSET else strict(raw, Situations)
-                yield index, found
+                    situations = UNSET if raw is UNSET else strict(raw, Situations)
+                yield index, situations
 
     def tallies(self) -> Iterator[dict[str, PropositionTally]]:
         """The tally of each proposition in each run."""
@@ -177,9 +177,9 @@ class Store(EvidenceSource):
         for run in self._runs(_Violations):
             for each in run.results:
                 with self._valid():
-                    found = strict(each.violations, list[Violation])
-                if found:
-                    yield run.run, each.requirement, found
+                    violations = strict(each.violations, list[Violation])
+                if violations:
+                    yield run.run, each.requirement, violations
 
     def _parts(self, kind: type[T]) -> Iterator[T]:
         return (each for run in self._runs(kind) for each in run.results)

@@ -340,7 +340,7 @@ def _durations(expression: e.Expression) -> tuple[e.Persistence, ...]:
     """The outermost `... for 200 ms` in the expression."""
     if isinstance(expression, e.Persistence):
         return (expression,)
-    return tuple(found for part in e.children(expression) for found in _durations(part))
+    return tuple(duration for part in e.children(expression) for duration in _durations(part))
 
 
 def _at(steps: StepFunction, times: Times) -> States:

@@ -78,16 +78,16 @@ class Details:
     ) -> Iterator[tuple[Assessment, Latencies, Thresholds]]:
         for group in self._groups(anchors):
             ids = {assessment.id for assessment in group}
-            found = self.evidence.latencies(ids) if self.evidence else ()
-            latencies = {index: array("d", some) for index, some in found}
+            latencies_of = self.evidence.latencies(ids) if self.evidence else ()
+            latencies = {index: array("d", some) for index, some in latencies_of}
             thresholds = self._thresholds(group)
             yield from ((assessment, latencies, thresholds) for assessment in group)
 
     def _thresholds(self, group: Sequence[Assessment]) -> Thresholds:
         declared = self.project.declarations
         ids = {assessment.id for assessment in group}
-        found = self.evidence.thresholds(ids) if self.evidence else ()
-        return {at: thresholds_in_declared_units(some, declared) for at, some in found}
+        thresholds_of = self.evidence.thresholds(ids) if self.evidence else ()
+        return {at: thresholds_in_declared_units(some, declared) for at, some in thresholds_of}
 
     def _groups(self, anchors: Iterable[str]) -> Iterator[list[Assessment]]:
         """The requirements in their order, in groups whose results are read at once."""

@@ -89,8 +89,8 @@ def changes(assessments: Sequence[Assessment], project: Project) -> tuple[Requir
     """
     reviewed = [assessment for assessment in assessments if assessment.review_status.review]
     pairs = [(assessment, difference(assessment.review_status, project)) for assessment in reviewed]
-    found = [_change(each, change) for each, change in pairs if change.state != "same"]
-    return tuple(sorted(found, key=lambda change: not change.is_root))
+    views = [_change(each, change) for each, change in pairs if change.state != "same"]
+    return tuple(sorted(views, key=lambda change: not change.is_root))
 
 
 def change_groups(

@@ -105,11 +105,11 @@ class ProgramTrace:
 
     def columns(self) -> dict[str, int]:
         """Each atom over time; unknown values count as false."""
-        found: dict[str, int] = {}
+        columns: dict[str, int] = {}
         for tick, truths in enumerate(self.truths):
             for name, truth in truths.items():
-                found[name] = found.get(name, 0) | (bool(truth) << tick)
-        return found
+                columns[name] = columns.get(name, 0) | (bool(truth) << tick)
+        return columns
 
     @property
     def is_known(self) -> bool:

@@ -52,12 +52,12 @@ def choices(
         wished: preferred enumeration values, truth values, and numbers in the signal's unit; None:
             unknown.
     """
-    found = dict.fromkeys(_nominal(signal, each) for each in wished if each is not None)
+    values = dict.fromkeys(_nominal(signal, each) for each in wished if each is not None)
     if signal.values:
-        found |= dict.fromkeys(signal.values)
+        values |= dict.fromkeys(signal.values)
     else:
-        found |= dict.fromkeys(_points(signal.name, read_by))
-    made = [each for nominal in found for each in _made(signal, field, nominal)]
+        values |= dict.fromkeys(_points(signal.name, read_by))
+    made = [each for nominal in values for each in _made(signal, field, nominal)]
     return (*made, *_unknown(signal, field))
 
 

@@ -203,13 +203,13 @@ def _clear(ring: str) -> str:
 
 def _joined(places: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:
     """Offsets and sizes in order, with adjacent ones joined."""
-    found: list[tuple[int, int]] = []
+    ranges: list[tuple[int, int]] = []
     for at, size in sorted(places):
-        if found and sum(found[-1]) == at:
-            found[-1] = found[-1][0], found[-1][1] + size
+        if ranges and sum(ranges[-1]) == at:
+            ranges[-1] = ranges[-1][0], ranges[-1][1] + size
         else:
-            found.append((at, size))
-    return found
+            ranges.append((at, size))
+    return ranges
 
 
 class CompiledMonitorMachine:

@@ -57,18 +57,18 @@ class Lexis:
             raise UnexpectedLayoutError(
                 f"line {_line(text, moving.start())} contains a hidden line break"
             )
-        found, start, line = list[str](), 0, 1
+        tokens, start, line = list[str](), 0, 1
         while start < len(text):
             match = self.token.match(text, start)
             if match is None:
                 raise UnexpectedLayoutError(f"line {line} has `{text[start : start + 1]!a}`")
             if match["gap"] is None:
-                found.append(Token.at(match[0], line))
-            elif "\n" in match[0] and found and found[-1] in self.line_bound:
-                found.append(Token.at("\n", line))
+                tokens.append(Token.at(match[0], line))
+            elif "\n" in match[0] and tokens and tokens[-1] in self.line_bound:
+                tokens.append(Token.at("\n", line))
             start = match.end()
             line += match[0].count("\n")
-        return tuple(found)
+        return tuple(tokens)
 
 
 def _line(text: str, index: int) -> int:

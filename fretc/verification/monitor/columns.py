@@ -163,30 +163,30 @@ def _traces(
         never: combinations that cannot occur.
     """
     choose, length = random.Random(bound), _length(bound)
-    found = []
+    traces = []
     for number in range(min(DRAWN, max(_FEWEST, _TICKS // length))):
         odds = 0.02 if number % 2 else 0.0
         names = atoms or monitor.PROPOSITIONS
         drawn = {name: _drawn(choose, length, bound, odds) for name in names}
         drawn = _possible(drawn, never, length)
-        found.append((drawn, _first_differences(monitor, drawn, length)))
-    return tuple(found)
+        traces.append((drawn, _first_differences(monitor, drawn, length)))
+    return tuple(traces)
 
 
 def _possible(
     columns: Mapping[str, Column], excluded: Sequence[Exclusion], length: int
 ) -> dict[str, Column]:
     """The columns with unknown values in place of impossible combinations."""
-    every, found = (1 << length) - 1, dict(columns)
+    every, possible = (1 << length) - 1, dict(columns)
     for exclusion in excluded:
         at = every
         for name, value in exclusion:
-            true, unknown = found[name]
+            true, unknown = possible[name]
             at &= true if value else every ^ (true | unknown)
         for name, _ in exclusion:
-            true, unknown = found[name]
-            found[name] = Column(true & ~at, unknown | at)
-    return found
+            true, unknown = possible[name]
+            possible[name] = Column(true & ~at, unknown | at)
+    return possible
 
 
 def _first_differences(
@@ -206,18 +206,18 @@ def _first_differences(
         beyond = [any(each >> length for each in (*certain[i], *possible[i])) for i in places]
     except Exception:
         return (length - 1,) * len(places)
-    found: list[int | None] = [length - 1 if is_beyond else None for is_beyond in beyond]
+    ticks: list[int | None] = [length - 1 if is_beyond else None for is_beyond in beyond]
     monitor.reset()
     values = [truths(columns[name], length) for name in monitor.PROPOSITIONS]
     for tick in range(length):
         monitor.advance([tuple([column[tick] for column in values])])
         for approximation, expected in ((monitor.certain, certain), (monitor.possible, possible)):
             signals = approximation.signals()
-            for index in [index for index in places if found[index] is None]:
+            for index in [index for index in places if ticks[index] is None]:
                 now = [bool(column >> tick & 1) for column in expected[index]]
                 if [bool(value) for value in signals[index]] != now:
-                    found[index] = tick
-    return tuple(found)
+                    ticks[index] = tick
+    return tuple(ticks)
 
 
 def _drawn(choose: random.Random, length: int, bound: int, unknown: float) -> Column:

@@ -34,20 +34,20 @@ def declared_variables(node: ast.stmt) -> Mapping[str, Variable]:
     Raises:
         UnexpectedCodeError: they do not have the layout that fretc writes.
     """
-    found: dict[str, Variable] = {}
+    variables: dict[str, Variable] = {}
     match node:
         case ast.AnnAssign(ast.Name("VARIABLES"), _, ast.Dict(keys, values)):
             for key, value in zip(keys, values, strict=True):
                 match key, value:
                     case ast.Constant(str(name)), ast.Call(ast.Name("Variable"), args, more):
-                        require(name not in found, node)
-                        found[name] = _variable(args, more, node)
+                        require(name not in variables, node)
+                        variables[name] = _variable(args, more, node)
                     case _:
                         require(False, node)
         case _:
             require(False, node)
-    require(bool(found), node)
-    return found
+    require(bool(variables), node)
+    return variables
 
 
 def _variable(args: Sequence[ast.expr], more: Sequence[ast.keyword], node: ast.stmt) -> Variable:

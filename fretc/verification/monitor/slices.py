@@ -85,13 +85,13 @@ def _sources(text: str) -> _Given:
 
 
 def _closure(given: _Given, names: Iterable[str]) -> frozenset[str]:
-    found = {*names}
-    waiting = [*found]
+    closure = {*names}
+    waiting = [*closure]
     while waiting:
-        for name in given.get(waiting.pop(), frozenset()) - found:
-            found.add(name)
+        for name in given.get(waiting.pop(), frozenset()) - closure:
+            closure.add(name)
             waiting.append(name)
-    return frozenset(found)
+    return frozenset(closure)
 
 
 def _given(

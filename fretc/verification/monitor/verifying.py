@@ -289,10 +289,10 @@ def _differing(
     reference = load("written", written)
     inputs, others = (getattr(each, "VARIABLES", None) for each in (monitor, reference))
     if inputs is not None and others is not None and _kinds(inputs) == _kinds(others):
-        found = front_terms.differing(monitor, reference, (text, written), names)
-        if found is not None:
-            word = tuple(tuple(row.get(name) for name in atoms) for row in found.truths)
-            return _disagreement(atoms, word, found.fault, found.values)
+        difference = front_terms.differing(monitor, reference, (text, written), names)
+        if difference is not None:
+            word = tuple(tuple(row.get(name) for name in atoms) for row in difference.truths)
+            return _disagreement(atoms, word, difference.fault, difference.values)
     wrong = next(name for name in names if actual.get(name) != expected[name])
     return not_checked(f"`{wrong}` is not computed from the variables as in generated code")
 
