@@ -420,9 +420,9 @@ def after_unknown() -> None:
         other.step(**dict.fromkeys(names))  # type: ignore[attr-defined]
         stepping(other.step, named)  # type: ignore[attr-defined]
         spent = [stepping(each.step, named) for each in (machine, other)]  # type: ignore[attr-defined]
-        met = "yes" if other.may is other.must else "no"
+        met = "yes" if other.possible is other.certain else "no"
         rows.append((name, *(f"{each:.3f}" for each in spent), f"{spent[1] / spent[0]:.2f}", met))
-    head = ("", "step us", "after an unknown", "x", "one rail")
+    head = ("", "step us", "after an unknown", "x", "one approximation")
     table("After an unknown value", head, rows)
 
 

@@ -23,10 +23,10 @@ from compiler.files.text_files import sha256
 from compiler.formalization.record import wording
 from compiler.project.folder import load
 from compiler.project.project import Project
-from fretc.audit.bases import bases
-from fretc.audit.evidence.basis import BINDINGS as BOUND
-from fretc.audit.evidence.basis import of_all
 from fretc.audit.evidence.schema import SCHEMA, EvidenceDocument, Result
+from fretc.audit.evidence.verdict_inputs import BINDINGS as BOUND
+from fretc.audit.evidence.verdict_inputs import of_all
+from fretc.audit.project_inputs import all_verdict_inputs
 from fretc.audit.store.container import packed
 from fretc.audit.store.writer import StoreFile, complete, publish
 from fretc.report.make import make
@@ -96,9 +96,9 @@ def evidence(known: Project, runs: int, share: float) -> dict[str, Any]:
 
 def head(known: Project) -> dict[str, Any]:
     """The same without its results."""
-    known_bases = bases(known)
+    inputs_of = all_verdict_inputs(known)
     bound = {
-        requirement.id: known_bases[requirement.entry][BOUND] for requirement in known.formalized
+        requirement.id: inputs_of[requirement.entry][BOUND] for requirement in known.formalized
     }
     texts = [
         {
@@ -114,13 +114,13 @@ def head(known: Project) -> dict[str, Any]:
 
 def results(known: Project, runs: int, share: float) -> Iterator[list[dict[str, Any]]]:
     """The results of each run."""
-    choose, known_bases = random.Random(1), bases(known)
+    choose, inputs_of = random.Random(1), all_verdict_inputs(known)
     for run in range(runs):
         yield [
             _result(
                 choose,
                 requirement,
-                known_bases[requirement.entry],
+                inputs_of[requirement.entry],
                 run,
                 violated=choose.random() < share,
             )
@@ -133,7 +133,12 @@ def _moment(tick: int) -> dict[str, Any]:
 
 
 def _result(
-    choose: random.Random, requirement: Any, basis: Mapping[str, str], run: int, *, violated: bool
+    choose: random.Random,
+    requirement: Any,
+    verdict_inputs: Mapping[str, str],
+    run: int,
+    *,
+    violated: bool,
 ) -> dict[str, Any]:
     triggers = sorted(choose.sample(range(TICKS - 200), 40))
     broken = triggers[:8] if violated else []
@@ -166,7 +171,7 @@ def _result(
         ],
         "units": {"clearance": "m", "vx": "m/s"},
         "assumptions": [],
-        "hashes": {"log": sha256(str(run)), **basis},
+        "hashes": {"log": sha256(str(run)), **verdict_inputs},
         "health": {
             "intact": True,
             "size": 12_345_678,

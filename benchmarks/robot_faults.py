@@ -1,6 +1,6 @@
 """Which faults of the interceptor and of the safety function tests from requirements find.
 
-The requirements say what each of them owes, tick by tick. Of a run of a suite only the inputs are
+The requirements say what each must do, tick by tick. Of a run of a suite only the inputs are
 used: the program answers, and monitors of all its requirements judge what came of it. The suite of
 `fretc test` stands beside random inputs of the same lengths, and beside a suite like FLIP's.
 """
@@ -276,7 +276,7 @@ def by_flips(subject: Subject) -> list[Run]:
     for each in requirements(subject):
         for atom in each.watched:
             bench = RequirementModel(each, (), (), Budget(60))
-            found = bench.doubt_of(bdd.true(), atom, ())
+            found = bench.dependence(bdd.true(), atom, ())
             if found is None:
                 continue
             letters, tick = found

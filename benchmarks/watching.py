@@ -28,8 +28,8 @@ from fretc.watch.watch import Watch
 from monitors.loading import executed
 
 ROOT = Path(__file__).parent.parent
-OWED = 20_000
-"""Calls of `standings` that are timed."""
+CALLS = 20_000
+"""Calls of `statuses` that are timed."""
 
 
 @contextmanager
@@ -74,9 +74,9 @@ def pending(folder: Path) -> float:
     running = module.MONITOR()
     running.advance([dict.fromkeys(running.PROPOSITIONS, True)])
     start = time.process_time()
-    for _ in range(OWED):
-        [each.obligation_pending for each in running.standings()]
-    return (time.process_time() - start) / OWED * 1e9
+    for _ in range(CALLS):
+        [each.obligation_pending for each in running.statuses()]
+    return (time.process_time() - start) / CALLS * 1e9
 
 
 def main() -> None:

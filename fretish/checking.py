@@ -61,13 +61,13 @@ def check_names(sentence: Sentence) -> Iterator[Diagnostic]:
             yield diagnostic("key_word_as_name", span, word=span.text)
 
 
-def check_value(expression: e.Expression, place: Span) -> Iterator[Diagnostic]:
+def check_value(expression: e.Expression, span: Span) -> Iterator[Diagnostic]:
     """Check the value of a variable: F112 and F115."""
     if depth(expression) > MOST:
-        yield diagnostic("expression_too_deep", place)
+        yield diagnostic("expression_too_deep", span)
         return
     is_truth = _is_boolean(expression, expected=True)
-    yield from _check_kinds(expression, place, boolean=is_truth)
+    yield from _check_kinds(expression, span, boolean=is_truth)
 
 
 def _names(expression: e.Expression) -> Iterator[tuple[str, Span | None]]:
@@ -86,10 +86,10 @@ def check_response_kinds(sentence: Sentence) -> Iterator[Diagnostic]:
 
 
 def _check_kinds(
-    expression: e.Expression, place: Span | None, *, boolean: bool = True
+    expression: e.Expression, span: Span | None, *, boolean: bool = True
 ) -> Iterator[Diagnostic]:
     """F112 for each part of the wrong kind; a name can be a number or a truth value."""
-    waiting: list[tuple[e.Expression, bool, Span | None]] = [(expression, boolean, place)]
+    waiting: list[tuple[e.Expression, bool, Span | None]] = [(expression, boolean, span)]
     while waiting:
         part, boolean, near = waiting.pop()
         here = getattr(part, "span", None) or near

@@ -72,12 +72,12 @@ class RequirementEntry:
         """Whether the whole text is in double quotes: it is kept, and not formalized."""
         return _FREE_TEXT.fullmatch(self.wording.text) is not None
 
-    def contains(self, place: Span | None) -> bool:
+    def contains(self, span: Span | None) -> bool:
         """Whether a span is in the header or the sentence."""
-        if place is None or place.source.name != self.wording.source.name:
+        if span is None or span.source.name != self.wording.source.name:
             return False
         start = self.header.text.start if self.header else self.wording.start
-        return start <= place.start <= self.wording.end
+        return start <= span.start <= self.wording.end
 
     def place(self, *path: str) -> Span:
         """The span of a header field; the sentence if there is no header."""

@@ -124,8 +124,8 @@ class Perception:
         live = self._live()
         truths_at_ticks = [live[each.name].peek(ticks) for each in self._setting.meanings]
         return [
-            (tick, self._row(tick, [truths[place] for truths in truths_at_ticks]))
-            for place, tick in enumerate(ticks)
+            (tick, self._row(tick, [truths[index] for truths in truths_at_ticks]))
+            for index, tick in enumerate(ticks)
         ]
 
     @property

@@ -42,9 +42,9 @@ class Series:
 
     def put(self, time: int, value: Reading) -> None:
         """Add a sample."""
-        place = bisect_right(self.times, time)
-        self.times.insert(place, time)
-        self.values.insert(place, value)
+        index = bisect_right(self.times, time)
+        self.times.insert(index, time)
+        self.values.insert(index, value)
 
     def forget(self, start: int) -> None:
         """Drop the samples before the one that is current at `start`."""
@@ -53,10 +53,10 @@ class Series:
 
     def next(self, done: int) -> "int | None":
         """The next time after `done` at which the value may change; None: never."""
-        place = bisect_right(self.times, done)
-        following = self.times[place] if place < len(self.times) else None
-        if place and self.max_age is not None:
-            expiry = self.times[place - 1] + self.max_age + 1
+        index = bisect_right(self.times, done)
+        following = self.times[index] if index < len(self.times) else None
+        if index and self.max_age is not None:
+            expiry = self.times[index - 1] + self.max_age + 1
             if expiry > done and (following is None or expiry < following):
                 return expiry
         return following
@@ -65,11 +65,11 @@ class Series:
         """The index range of the samples at a time, end excluded."""
         return bisect_left(self.times, time), bisect_right(self.times, time)
 
-    def at(self, place: int, time: int) -> Reading:
+    def at(self, index: int, time: int) -> Reading:
         """The value of a sample at a time; None if it is too old."""
-        if place < 0 or (self.max_age is not None and time - self.times[place] > self.max_age):
+        if index < 0 or (self.max_age is not None and time - self.times[index] > self.max_age):
             return None
-        return self.values[place]
+        return self.values[index]
 
 
 class _Persistence:
@@ -134,12 +134,12 @@ class PropositionEvaluator:
     def steps(self, until: int) -> "list[tuple[int, Truth]]":
         """Advance to `until`, which is included; the new steps as (time, truth)."""
         self._ahead = None
-        found: list[tuple[int, Truth]] = []
+        steps: list[tuple[int, Truth]] = []
         while (time := self._next()) is not None and time <= until:
-            found += ((time, truth) for truth in self._at(time))
+            steps += ((time, truth) for truth in self._at(time))
             self._done = time
         self._done = max(self._done, until)
-        return found
+        return steps
 
     def value_at_tick(self, tick: int, first: "tuple[int, int | None] | None" = None) -> Truth:
         """The truth at a tick; ticks must be given in increasing order.
@@ -151,8 +151,8 @@ class PropositionEvaluator:
         steps: Sequence[tuple[int, Truth]] = self.steps(tick)
         if first is not None and steps:
             told = [
-                place
-                for place, (time, truth) in enumerate(steps)
+                index
+                for index, (time, truth) in enumerate(steps)
                 if truth is not None or (first[1] is not None and time >= first[1])
             ]
             steps = steps[told[0] if told else -1 :]
@@ -165,13 +165,13 @@ class PropositionEvaluator:
         other, steps = self._ahead
         steps += other.steps(ticks[-1])
         begin, before = 0, self._truth
-        found: list[Truth] = []
+        truths: list[Truth] = []
         for tick in ticks:
             end = bisect_left(steps, (tick + 1,))  # Less than each step of that time.
-            found.append(self._seen(steps[begin:end], before))
+            truths.append(self._seen(steps[begin:end], before))
             before = steps[end - 1][1] if end else before
             begin = end
-        return found
+        return truths
 
     def invalidate_lookahead(self, time: int) -> None:
         """Discard results ahead of a new sample of one of its signals."""

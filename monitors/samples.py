@@ -113,19 +113,19 @@ def _elements(
             return policy.quick(values, lambda x: _meant(policy, x), *row.values())
         except _UnknownSampleError:
             return None
-    found: list[Reading] = []
+    readings: list[Reading] = []
     for value in values:
         x = Single(value) if single else number(+value, policy.name)
         if x is not None and isfinite(x):
             row["x"] = x
             if policy.valid is None or policy.valid(row):
-                found.append(x)
+                readings.append(x)
                 continue
         try:
-            found.append(_meant(policy, x))
+            readings.append(_meant(policy, x))
         except _UnknownSampleError:
             return None
-    return found
+    return readings
 
 
 class _UnknownSampleError(Exception):
@@ -166,8 +166,8 @@ def _clearance(policy: Policy, ranges: "Sequence[Reading]", start: float, step: 
 def _gap(x: float, y: float, corners: "Sequence[tuple[float, float]]") -> float:
     """The distance from a point to a polygon; 0 inside."""
     inside, least = False, inf
-    for place, (x1, y1) in enumerate(corners):
-        x2, y2 = corners[(place + 1) % len(corners)]
+    for index, (x1, y1) in enumerate(corners):
+        x2, y2 = corners[(index + 1) % len(corners)]
         if (y1 > y) != (y2 > y) and x < x1 + (y - y1) / (y2 - y1) * (x2 - x1):
             inside = not inside
         ax, ay = x2 - x1, y2 - y1

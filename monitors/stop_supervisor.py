@@ -126,8 +126,8 @@ class StopSupervisor:
             step()
         finally:
             if self._evaluator.resets != resets:
-                standings = monitor.standings()
-                self._violated |= {s.requirement for s in standings if s.verdict == "violated"}
+                statuses = monitor.statuses()
+                self._violated |= {s.requirement for s in statuses if s.verdict == "violated"}
             self._now = now
             self._obligation_pending = self._evaluator.obligation_pending()
 
@@ -157,18 +157,18 @@ class StopSupervisor:
     def states(self) -> "tuple[State, ...]":
         """The status of each requirement; `obligation_pending` counts messages since the tick."""
         monitor = self._evaluator.monitor
-        read = zip(monitor.standings(), self._obligation_pending, monitor.must.marks())
+        read = zip(monitor.statuses(), self._obligation_pending, monitor.certain.marks())
         return tuple(
             State(
-                standing.requirement,
-                str(standing.verdict),
+                status.requirement,
+                str(status.verdict),
                 pending,
                 self._time(mark.last if mark.last >= 0 else None),
-                self._time(standing.open),
-                self._time(standing.deadline),
-                self._time(standing.first_violation),
+                self._time(status.open),
+                self._time(status.deadline),
+                self._time(status.first_violation),
             )
-            for standing, pending, mark in read
+            for status, pending, mark in read
         )
 
     def news(self) -> "list[dict[str, Any]]":
@@ -303,9 +303,9 @@ def _type(
     message: Any, fields: "Sequence[str]", topic: str, types: "Callable[[Any], Mapping[str, str]]"
 ) -> str:
     name = type(message).__name__
-    for place, field in enumerate(fields):
+    for index, field in enumerate(fields):
         known = types(message) if hasattr(message, field) else {}
         if field not in known:
-            raise ValueError(f"{name} of {topic} has no field {'.'.join(fields[: place + 1])}")
-        found, message = known[field], getattr(message, field)
-    return found
+            raise ValueError(f"{name} of {topic} has no field {'.'.join(fields[: index + 1])}")
+        kind, message = known[field], getattr(message, field)
+    return kind

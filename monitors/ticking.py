@@ -239,8 +239,8 @@ class Ledger:
 
     def time(self, tick: int) -> "int | None":
         """The time of a tick; None if it was dropped."""
-        place = tick - self._dropped
-        return self._times[place] if 0 <= place < len(self._times) else None
+        index = tick - self._dropped
+        return self._times[index] if 0 <= index < len(self._times) else None
 
     def _state(self) -> "tuple[Mapping[str, Any], ...]":
         return tuple(monitor.state() for monitor in self._monitors)
@@ -286,15 +286,15 @@ class Ledger:
         if self._before is not None and time < self._before:
             self.beyond += 1
             return
-        place = bisect_right(self._times, time)
-        self._times.insert(place, time)
-        self._rows.insert(place, dict.fromkeys(propositions))
+        index = bisect_right(self._times, time)
+        self._times.insert(index, time)
+        self._rows.insert(index, dict.fromkeys(propositions))
         self._late.add(time)
-        self._again(place)
+        self._again(index)
 
-    def _again(self, place: int) -> None:
+    def _again(self, index: int) -> None:
         """Step the monitors again over the rows from an index on."""
-        while self._states[-1][0] > place:
+        while self._states[-1][0] > index:
             self._states.pop()
         begin, states = self._states[-1]
         for monitor, state in zip(self._monitors, states):
@@ -304,7 +304,7 @@ class Ledger:
     def _forget(self) -> None:
         """Drop rows that need not be kept, up to a stored state of the monitors."""
         spare = len(self._rows) - self._kept if self._kept else 0
-        drop = max((place for place, _ in self._states if place <= spare), default=0)
+        drop = max((index for index, _ in self._states if index <= spare), default=0)
         if not drop:
             return
         self._before, self._dropped = self._times[drop - 1], self._dropped + drop
@@ -312,7 +312,7 @@ class Ledger:
         self._late -= dropped
         self._dropped_late += len(dropped)
         del self._times[:drop], self._rows[:drop]
-        self._states = [(place - drop, state) for place, state in self._states if place >= drop]
+        self._states = [(index - drop, state) for index, state in self._states if index >= drop]
 
 
 _APART = 64

@@ -27,7 +27,7 @@ Rows = Sequence[Sequence[Truth]]
 
 
 class Reading(NamedTuple):
-    """One rail after a tick."""
+    """One approximation after a tick."""
 
     left: int
     violated: bool
@@ -223,23 +223,23 @@ def of_python(machine: Monitor, rows: Rows) -> Iterator[list[Outcome]]:
     machine.reset()
     for row in rows:
         machine.advance([row])
-        verdicts, standings = machine.verdicts(), machine.standings()
-        rails = [
+        verdicts, statuses = machine.verdicts(), machine.statuses()
+        approximations = [
             [
                 *map(
                     _reading,
                     machine.REQUIREMENTS,
-                    rail.signals(),
-                    rail.marks(),
+                    approximation.signals(),
+                    approximation.marks(),
                     [machine.tick] * len(verdicts),
                 )
             ]
-            for rail in (machine.must, machine.may)
+            for approximation in (machine.certain, machine.possible)
         ]
         yield [
-            Outcome(certain, possible, str(verdict), standing.finite, standing.obligation_pending)
-            for certain, possible, verdict, standing in zip(
-                *rails, verdicts, standings, strict=True
+            Outcome(certain, possible, str(verdict), status.finite, status.obligation_pending)
+            for certain, possible, verdict, status in zip(
+                *approximations, verdicts, statuses, strict=True
             )
         ]
 

@@ -194,7 +194,9 @@ def _told_by_javascript(
 
 
 def _outcome(tick: int, told: dict[str, Any]) -> c_monitors.Outcome:
-    certain, possible = (_reading(tick, told[rail]) for rail in ("certain", "possible"))
+    certain, possible = (
+        _reading(tick, told[approximation]) for approximation in ("certain", "possible")
+    )
     # Only both together tell whether it was broken, or fails now.
     failed = {False: (True, True), True: (False, False), None: (False, True)}[told["finite"]]
     return c_monitors.Outcome(
@@ -219,20 +221,21 @@ def _reading(tick: int, told: dict[str, Any]) -> Reading:
 C = Tongue(
     "c", c, given_c, (r"/\*.*?\*/", "/* mine\n */"), "_clear(", "_judge(&",
     (*_SHARED, *_BITWISE, (r"!= FRETC", "== FRETC"), (r"\.certain;", ".possible;"),
-     (r"(?m)^    +(rail|reading)->\w+ = .*;$", ";")),
+     (r"(?m)^    +(approximation|reading)->\w+ = .*;$", ";")),
     "gcc", _told_by_c,
 )  # fmt: skip
 RUST = Tongue(
-    "rust", rust, given_rust, (r"(?<!/)// .*", "// mine\n//"), "impl Rail {", "impl Default",
+    "rust", rust, given_rust, (r"(?<!/)// .*", "// mine\n//"),
+    "impl Approximation {", "impl Default",
     (*_SHARED, *_BITWISE, (r"!= Some", "== Some"), (r"\(certain\[", "(possible["),
      (r": (\d+|-1),", ": 7,"), (r"(?m)^ +self\.\w+ = .*;$", "")),
     "rustc", _told_by_rust,
 )  # fmt: skip
 JAVASCRIPT = Tongue(
     "javascript", javascript, given_javascript, (r"// .*", "// mine\n/* too */"),
-    "function rail(", "/** The truth of",
+    "function approximation(", "/** The truth of",
     (*_SHARED, (r"null \?", "true ?"), (r": (\d+|-1),", ": 7,"),
-     (r"(?m)^  rail\.\w+ = .*;$", "")),
+     (r"(?m)^  approximation\.\w+ = .*;$", "")),
     "node", _told_by_javascript,
 )  # fmt: skip
 TONGUES = {each.name: each for each in (C, RUST, JAVASCRIPT)}

@@ -56,8 +56,8 @@ def main(folder: str, singles: str) -> None:
                 source.close()
     node.pass_to(latest + live.SETTING.lateness + 1)  # nothing more comes of what is before it
     rows += settled(node.ledger, len(rows), 0)
-    standings = {each.requirement: str(each.verdict) for each in node.monitor.standings()}
-    print(json.dumps({"rows": rows, "standings": standings, "resets": node.resets}))
+    statuses = {each.requirement: str(each.verdict) for each in node.monitor.statuses()}
+    print(json.dumps({"rows": rows, "statuses": statuses, "resets": node.resets}))
 
 
 if __name__ == "__main__":

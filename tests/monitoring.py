@@ -90,15 +90,15 @@ def steps(machine: Monitor, columns: Mapping[str, Sequence[Truth]], place: int =
 
 def step(machine: Monitor, place: int = 0) -> Step:
     """What it tells now."""
-    standing = machine.standings()[place]
-    signals = zip(machine.must.signals()[place], machine.may.signals()[place], strict=True)
+    status = machine.statuses()[place]
+    signals = zip(machine.certain.signals()[place], machine.possible.signals()[place], strict=True)
     return Step(
         machine.tick,
         machine.verdicts()[place],
-        standing.verdict,
-        standing.finite,
-        standing.first_violation,
-        *[truth(must, may) for must, may in signals],
+        status.verdict,
+        status.finite,
+        status.first_violation,
+        *[truth(certain, possible) for certain, possible in signals],
     )
 
 
@@ -120,14 +120,17 @@ def over(
 OWN = "# The requirements ---"
 """Where the code of the requirements begins."""
 _TICK = re.compile(
-    r"( +)rail\.tick = tick = rail\.tick \+ 1\n(?:.*\n)*?(?= +if rail\.\w+_broken >)"
+    r"( +)approximation\.tick = tick = approximation\.tick \+ 1\n"
+    r"(?:.*\n)*?(?= +if approximation\.\w+_broken >)"
 )
 
 
 def without_step(text: str) -> str:
     """A monitor's text; of the tick in its step the first line is left."""
     place = text.index(OWN)
-    return text[:place] + _TICK.sub(r"\1rail.tick = tick = rail.tick + 1\n", text[place:])
+    return text[:place] + _TICK.sub(
+        r"\1approximation.tick = tick = approximation.tick + 1\n", text[place:]
+    )
 
 
 def with_step(text: str) -> str:

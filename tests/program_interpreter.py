@@ -66,17 +66,19 @@ def initial(program: Program) -> State:
     return State(-1, values, windows, (), (Marks(-1, -1, -1, -1),) * len(program.requirements))
 
 
-def step(program: Program, state: State, row: Mapping[str, Truth], doubt: bool = False) -> State:
+def step(
+    program: Program, state: State, row: Mapping[str, Truth], is_possible: bool = False
+) -> State:
     """The state one tick later.
 
     Args:
         program: the program.
         state: the state after the tick before.
         row: the truth of each proposition; None: unknown.
-        doubt: the value that an unknown literal counts as.
+        is_possible: the value that an unknown literal counts as.
     """
     sizes = {cell.name: cell for cell in program.cells if isinstance(cell, WindowMemory)}
-    tick = _Tick(row, doubt, sizes, dict(state.values), dict(state.windows))
+    tick = _Tick(row, is_possible, sizes, dict(state.values), dict(state.windows))
     for block in program.blocks:
         for instruction in block.instructions:
             tick.do(instruction)
@@ -109,7 +111,7 @@ class _Tick:
     """One tick of the certain or of the possible values."""
 
     row: Mapping[str, Truth]
-    doubt: bool
+    is_possible: bool
     sizes: Mapping[str, WindowMemory]
     values: dict[str, bool | int] = field(default_factory=dict)
     windows: dict[str, Pairs] = field(default_factory=dict)
@@ -120,7 +122,7 @@ class _Tick:
                 return truth
             case Literal(proposition, positive):
                 truth_ = self.row[proposition]
-                return self.doubt if truth_ is None else truth_ is positive
+                return self.is_possible if truth_ is None else truth_ is positive
             case Variable(name):
                 return bool(self.values[name])
             case Age(counter, comparison, number):

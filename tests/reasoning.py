@@ -141,17 +141,17 @@ def answers(
         node = todo.pop()
         if node in runs:
             continue
-        state, before, owed = node
+        state, before, was_pending = node
         runs[node] = set()
         assert len(runs) < limit, "too many states"
         for told, after in machine.cycles(state):
-            last, owing = before, owed
+            last, pending = before, was_pending
             for beliefs in told:
                 now = trigger(beliefs)
-                owing = (owing or (now and not (edges and last))) and response not in beliefs
+                pending = (pending or (now and not (edges and last))) and response not in beliefs
                 last = now
             # A trigger that stays asks again in each state, unless only its coming counts.
-            runs[node].add((after, last, owing))
+            runs[node].add((after, last, pending))
         todo.extend(runs[node])
     return not _lasting({n: {m for m in after if m[2]} for n, after in runs.items() if n[2]})
 

@@ -35,13 +35,13 @@ def unexpected(error: UnexpectedInput, source: Source) -> Diagnostic:
         end = source.span(length, length)
         return diagnostic("agent_file_ends", end, help=_wanted(error))
     at = error.pos_in_stream or 0
-    place = source.span(at, at + (len(token) if token is not None else 1))
+    span = source.span(at, at + (len(token) if token is not None else 1))
     if isinstance(error, UnexpectedToken) and _follows_rules(error):
-        return diagnostic("beyond_model", place, feature="a reasoning rule")
+        return diagnostic("beyond_model", span, feature="a reasoning rule")
     return (
         _sign_of_more(source, at)
         or _mistake(source, at)
-        or diagnostic("unexpected_in_agent", place, place=place.text, help=_wanted(error))
+        or diagnostic("unexpected_in_agent", span, place=span.text, help=_wanted(error))
     )
 
 
@@ -69,14 +69,14 @@ _HEADING = re.compile(r":[A-Za-z][A-Za-z ]*:")
 def _mistake(source: Source, at: int) -> Diagnostic | None:
     """F610 for a common mistake of users, if one stands at this position."""
     rest = source.text[at:]
-    place = source.span(at, at + 1)
+    span = source.span(at, at + 1)
     if rest.startswith(("#", "%")):
-        return diagnostic("bad_comment", place, character=rest[0], help=_COMMENTS)
+        return diagnostic("bad_comment", span, character=rest[0], help=_COMMENTS)
     if rest.startswith("/*"):
-        return diagnostic("unclosed_comment", place)
+        return diagnostic("unclosed_comment", span)
     if rest.startswith("-") and _NAME_SECTION.search(source.text[:at]):
         fix = "an agent's name has letters, digits and `_` only"
-        return diagnostic("hyphen_in_agent_name", place, help=fix)
+        return diagnostic("hyphen_in_agent_name", span, help=fix)
     heading = _HEADING.match(rest)
     if heading is None or heading[0] in _ALL_HEADINGS:
         return None

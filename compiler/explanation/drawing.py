@@ -224,8 +224,8 @@ def _step(columns: Sequence[Slot]) -> float:
     return min(_WIDEST, (_WIDTH - _LEFT - _RIGHT) / len(columns))
 
 
-def _x(place: int, columns: Sequence[Slot]) -> float:
-    return round(_LEFT + place * _step(columns), 2)
+def _x(index: int, columns: Sequence[Slot]) -> float:
+    return round(_LEFT + index * _step(columns), 2)
 
 
 def _row(lane: DiagramLane, number: int, columns: Sequence[Slot]) -> DiagramRow:

@@ -120,8 +120,8 @@ def read(path: str, kind: type[R], command: str, again: str) -> tuple[Source, R]
         what = "is not JSON that fretc can read: it is nested too deeply"
     except ValueError as error:
         what = f"is not JSON that fretc can read: {error}"
-    place = Source(source.name, "").span()
-    return diagnostic("bad_result_file", place, path=source.name, what=what, help=again)
+    span = Source(source.name, "").span()
+    return diagnostic("bad_result_file", span, path=source.name, what=what, help=again)
 
 
 def plain(record: object) -> Any:

@@ -180,5 +180,5 @@ _ACCEPT = '`F631 = "the reason"`, or `F315 = { "/battery" = "the reason" }`, und
 
 def _bad_settings(settings: Settings, message: str, fix: str, *path: str) -> Diagnostic:
     assert settings.tables is not None
-    place = settings.tables.place(*settings.table, *path)
-    return Diagnostic(Code.BAD_SETTINGS, message, place, help=fix)
+    span = settings.tables.place(*settings.table, *path)
+    return Diagnostic(Code.BAD_SETTINGS, message, span, help=fix)

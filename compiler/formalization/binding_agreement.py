@@ -161,13 +161,13 @@ def _number(digits: str) -> Fraction | None:
 def _drifted(
     requirement: FormalizedRequirement, name: str, stated: e.Expression, bound: Proposition
 ) -> Diagnostic:
-    place: Span | None = getattr(stated, "span", None)
-    inside = place is not None and place.source is requirement.entry.wording.source
+    span: Span | None = getattr(stated, "span", None)
+    inside = span is not None and span.source is requirement.entry.wording.source
     assert bound.span is not None
     where = f"{bound.span.source.name}:{bound.span.line}:{bound.span.column}"
     return diagnostic(
         "other_comparison_bound",
-        place if inside else requirement.entry.wording,
+        span if inside else requirement.entry.wording,
         name=name,
         requirement=requirement.id,
         text=bound.span.text,

@@ -89,26 +89,26 @@ def _formalized(
 
 
 def _misuses(
-    written: Sentence, definitions: Definitions, declarations: Declarations | None, place: Span
+    written: Sentence, definitions: Definitions, declarations: Declarations | None, span: Span
 ) -> tuple[Diagnostic, ...]:
     """F344 in the sentence, and in the definitions of its names."""
     if declarations is None:
         return ()
     variables = declarations.variables
-    inside = [type_errors(expression, variables, place) for expression in conditions(written)]
+    inside = [type_errors(expression, variables, span) for expression in conditions(written)]
     values = [value_type_errors(variables[name], variables) for name in definitions]
     return tuple(dict.fromkeys(chain(*inside, *values)))
 
 
 def _judged(
-    written: Sentence, definitions: Definitions, declarations: Declarations | None, place: Span
+    written: Sentence, definitions: Definitions, declarations: Declarations | None, span: Span
 ) -> Sentence | Diagnostic:
     """The sentence to formalize: names expanded, numbers in the signals' units."""
     sentence = expanded(written, definitions)
     if isinstance(sentence, Diagnostic) or declarations is None:
         return sentence
     wrong = next(check_response_kinds(sentence), None)
-    return wrong or in_own_units(sentence, declarations, place)
+    return wrong or in_own_units(sentence, declarations, span)
 
 
 @with_recursion_limit
@@ -254,13 +254,13 @@ def duplicate_ids(
     for requirement in requirements:
         earlier = first.setdefault(re.sub(r"[-.]", "_", requirement.id.lower()), requirement)
         if earlier is not requirement:
-            place = earlier.place("id")
+            span = earlier.place("id")
             diagnostics[requirement] = diagnostic(
                 "duplicate_id",
                 requirement.place("id"),
                 requirement=requirement.id,
-                source=place.source.name,
-                line=place.line,
+                source=span.source.name,
+                line=span.line,
             )
             diagnostics.setdefault(earlier, diagnostics[requirement])
     return diagnostics

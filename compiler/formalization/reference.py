@@ -144,8 +144,8 @@ def _within(count: int, n: int, triggered: bool, q: bool, s: bool) -> int | None
 
 def _for(count: int, n: int, triggered: bool, q: bool, s: bool) -> int | None:
     """Q throughout t..t+n; the count is the ticks left of the newest trigger t."""
-    owed = n + 1 if triggered else count
-    return None if owed and not q else max(owed - 1, 0)
+    pending = n + 1 if triggered else count
+    return None if pending and not q else max(pending - 1, 0)
 
 
 def _after(count: int, n: int, triggered: bool, q: bool, s: bool) -> int | None:
@@ -194,7 +194,7 @@ def _before(count: int, n: int, triggered: bool, q: bool, s: bool) -> int | None
     return None if s else int(not q)
 
 
-_OWED_AT_THE_END = (_finally, _eventually)
+_PENDING_AT_THE_END = (_finally, _eventually)
 """The counters that violate with a positive count if the interval ends."""
 
 _DEMANDS: Mapping[type[s.Timing], tuple[Counter, bool]] = {
@@ -315,7 +315,7 @@ def tick_role(template: Template, state: ReferenceState, m: bool, p: bool) -> Ti
 
 def accepts(template: Template, state: ReferenceState) -> bool:
     """FRET's verdict on a finite trace that ends here: an open interval ends with it."""
-    return state.counted <= 0 or _demand(template)[0] not in _OWED_AT_THE_END
+    return state.counted <= 0 or _demand(template)[0] not in _PENDING_AT_THE_END
 
 
 def accepting(template: Template, state: ReferenceState) -> bool:

@@ -28,7 +28,7 @@ from fretish.syntax import Sentence
 
 
 def in_own_units(
-    sentence: Sentence, declarations: Declarations, place: Span
+    sentence: Sentence, declarations: Declarations, span: Span
 ) -> Sentence | Diagnostic:
     """The sentence with names resolved to signals' values, and with the signals' units."""
     signals = declarations.signals
@@ -37,26 +37,26 @@ def in_own_units(
     def converted(comparison: e.Comparison) -> e.Comparison:
         if not comparisons.is_measured(comparison, signals):
             return comparison
-        own = comparisons.in_own_units(comparison, signals, place)
+        own = comparisons.in_own_units(comparison, signals, span)
         if isinstance(own, e.Comparison):
             return own
         mistakes.append(own)
         return comparison
 
-    worded = _worded(sentence, declarations, place)
+    worded = _worded(sentence, declarations, span)
     if isinstance(worded, Diagnostic):
         return worded
     own = s.with_expressions(worded, lambda expression: e.with_comparisons(expression, converted))
     return mistakes[0] if mistakes else own
 
 
-def _worded(sentence: Sentence, declarations: Declarations, place: Span) -> Sentence | Diagnostic:
+def _worded(sentence: Sentence, declarations: Declarations, span: Span) -> Sentence | Diagnostic:
     """The sentence as written, with names resolved to signals' values."""
     signals = _without(declarations.propositions, declarations.signals)
     mistakes: list[Diagnostic] = []
 
     def rewritten(expression: e.Expression) -> e.Expression:
-        worded = resolve_words(expression, signals, place)
+        worded = resolve_words(expression, signals, span)
         if isinstance(worded, Diagnostic):
             mistakes.append(worded)
             return expression
@@ -111,14 +111,14 @@ def with_signal_atoms(
 
 
 def _aggregate(
-    expression: e.Expression, signals: Mapping[str, Signal], place: Span
+    expression: e.Expression, signals: Mapping[str, Signal], span: Span
 ) -> Aggregate | Diagnostic:
     """The aggregation of several samples in one tick, as the signals declare it."""
     read = [signals[name.id] for name in e.names(expression) if name.id in signals]
     kinds = {signal.aggregate for signal in read} or {Aggregate.LAST}
     if len(kinds) > 1 or (ticks_back(expression) and kinds != {Aggregate.LAST}):
         names = ", ".join(dict.fromkeys(f"`{signal.name}`" for signal in read))
-        return diagnostic("several_aggregates", place, names=names)
+        return diagnostic("several_aggregates", span, names=names)
     return kinds.pop()
 
 
@@ -173,9 +173,7 @@ def _mistakes(part: e.Expression, declarations: Declarations) -> tuple[Diagnosti
     return tuple(dict.fromkeys(chain.from_iterable(own))) if all_declared else ()
 
 
-def _bound(
-    part: e.Expression, declarations: Declarations, place: Span
-) -> e.Expression | Diagnostic:
+def _bound(part: e.Expression, declarations: Declarations, span: Span) -> e.Expression | Diagnostic:
     if not isinstance(part, e.Comparison):
         return part
-    return comparisons.bound(part, declarations.signals, place)
+    return comparisons.bound(part, declarations.signals, span)

@@ -157,9 +157,9 @@ class _Automaton:
             case f.Const(value):
                 return lambda *_: int(value)
             case f.And():
-                return lambda values, *_: int(all(values[place] for place in places))
+                return lambda values, *_: int(all(values[index] for index in places))
             case f.Or():
-                return lambda values, *_: int(any(values[place] for place in places))
+                return lambda values, *_: int(any(values[index] for index in places))
             case f.Not():
                 return lambda values, *_: 1 - values[places[0]]
             case f.Xor():
@@ -182,12 +182,12 @@ class _Automaton:
             case _:
                 raise ValueError("not a formula of the past")
 
-    def _kept(self, place: int, first: int) -> _Node:
+    def _kept(self, index: int, first: int) -> _Node:
         slot = len(self._first)
         self._first.append(first)
 
         def node(values: _Values, state: State, memory: list[int]) -> int:
-            memory.append(values[place])
+            memory.append(values[index])
             return state[slot]
 
         return node

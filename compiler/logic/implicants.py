@@ -25,8 +25,8 @@ def cover(certain: Sequence[Vector], excluded: Iterable[Vector]) -> list[Term]:
         if any(matches(term, vector) for term in terms):
             continue
         term = dict(enumerate(vector))
-        for place in reversed(range(len(vector))):
-            shorter = {i: value for i, value in term.items() if i != place}
+        for index in reversed(range(len(vector))):
+            shorter = {i: value for i, value in term.items() if i != index}
             if not any(matches(shorter, row) for row in off):
                 term = shorter
         terms.append(term)

@@ -77,7 +77,7 @@ def only_possible(
     valuations: Sequence[Values], atoms: Sequence[str], excluded: Sequence[Exclusion]
 ) -> tuple[Values, ...]:
     """The valuations of atoms that are not excluded, in their order; all, if none were left."""
-    places = {name: place for place, name in enumerate(atoms)}
+    places = {name: index for index, name in enumerate(atoms)}
     relevant = [
         [(places[name], value) for name, value in exclusion]
         for exclusion in excluded
@@ -112,7 +112,7 @@ def _groups(relations: Mapping[str, Relation]) -> Sequence[Sequence[str]]:
     for name, relation in relations.items():
         first = next(relation.terms, None)
         groups.setdefault(name if first is None else head(first), []).append(name)
-    places = {name: place for place, name in enumerate(relations)}
+    places = {name: index for index, name in enumerate(relations)}
     return sorted(groups.values(), key=lambda names: places[names[-1]])
 
 
@@ -224,7 +224,7 @@ class _ValuationSearch:
         self._relations, self._names, self._words = relations, names, words
         self._found: list[Exclusion] = []
         self._by_last: dict[Literal, list[int]] = {}
-        self._places = {point: place for place, point in enumerate(points)}
+        self._places = {point: index for index, point in enumerate(points)}
         self._known = self._order()
         self._left, self._steps = MOST, steps
 
@@ -264,17 +264,17 @@ class _ValuationSearch:
         fixed = self._known.copy()
         self._add(fixed, last)
         while not fixed.is_impossible:
-            order, place = fixed.copy(), len(chosen)
+            order, index = fixed.copy(), len(chosen)
             while not order.is_impossible:
                 if self._steps <= 0:
                     return
-                place -= 1
+                index -= 1
                 self._steps -= len(self._places)
-                self._add(order, chosen[place])
-            needed.append(place)
-            self._add(fixed, chosen[place])
-        self._found.append((*(chosen[place] for place in sorted(needed)), last))
-        bits = sum(1 << 2 * place + chosen[place][1] for place in needed)
+                self._add(order, chosen[index])
+            needed.append(index)
+            self._add(fixed, chosen[index])
+        self._found.append((*(chosen[index] for index in sorted(needed)), last))
+        bits = sum(1 << 2 * index + chosen[index][1] for index in needed)
         self._by_last.setdefault(last, []).append(bits)
 
     def _add(self, order: _Order, literal: Literal) -> None:
@@ -297,17 +297,17 @@ class _ValuationSearch:
 
     def _order(self) -> _Order:
         """The order of the points that holds for all measurements."""
-        single = [1 << place for place in range(len(self._places))]
+        single = [1 << index for index in range(len(self._places))]
         order = _Order([*single], [0] * len(single), [0] * len(single))
         self._add_constants(order)
-        for point, place in self._places.items():
+        for point, index in self._places.items():
             arg = of_magnitude(point) if isinstance(point, Term) else None
             parts: tuple[Point, ...] = () if arg is None else (ZERO, arg, negative(arg))
             for part in parts:
-                order.add(self._places[part], place, strict=False)
-        spoken = sum(1 << place for point, place in self._places.items() if is_word(point))
-        for place in _places(spoken):
-            order.apart[place] = spoken & ~(1 << place)
+                order.add(self._places[part], index, strict=False)
+        spoken = sum(1 << index for point, index in self._places.items() if is_word(point))
+        for index in _places(spoken):
+            order.apart[index] = spoken & ~(1 << index)
         order.choices = tuple(self._choices())
         return order
 
@@ -329,12 +329,12 @@ class _ValuationSearch:
 
     def _choices(self) -> Iterator[tuple[int, int]]:
         """Enumerated signals whose values all appear as points."""
-        for point, place in self._places.items():
+        for point, index in self._places.items():
             match point:
                 case Term(e.Name(id)) if id in self._words:
                     words = [Term(e.Word(word), is_base=False) for word in self._words[id]]
                     if all(word in self._places for word in words):
-                        yield place, sum(1 << self._places[word] for word in words)
+                        yield index, sum(1 << self._places[word] for word in words)
 
 
 def _points(relations: Iterable[Relation]) -> Iterator[Point]:

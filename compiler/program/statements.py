@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, Self, assert_never
 
 from compiler.program.instructions import Advance, Assign, Choose, SetCounter, Shift
-from compiler.program.rails import Cell, Deadline, Delay, Ring, Step, StoredProgram
+from compiler.program.stored_program import Cell, Deadline, Delay, Ring, Step, StoredProgram
 from compiler.program.values import Age, And, Constant, Literal, Not, Or, Value, Variable
 from fretish.classes.frozen import dataclass
 
@@ -30,16 +30,16 @@ class Statements(ABC):
     IF: ClassVar[tuple[str, str]]
     """The text before and after a condition."""
 
-    rail: StoredProgram
+    program: StoredProgram
     names: Mapping[str, str]
     """An identifier for each proposition."""
     cells: Mapping[str, Cell]
     """The cells by their names."""
 
     @classmethod
-    def of(cls, rail: StoredProgram, names: Mapping[str, str]) -> Self:
+    def of(cls, program: StoredProgram, names: Mapping[str, str]) -> Self:
         """The statements of a program, with an identifier for each proposition."""
-        return cls(rail, names, {cell.name: cell for cell in rail.cells})
+        return cls(program, names, {cell.name: cell for cell in program.cells})
 
     @abstractmethod
     def negated(self, value: Value) -> str:
@@ -66,7 +66,7 @@ class Statements(ABC):
                 "left": self.left(reading.deadline, reading.truths["open"]),
                 "truths": {name: self.value(value) for name, value in reading.truths.items()},
             }
-            for reading in self.rail.readings
+            for reading in self.program.readings
         ]
 
     def stages(self) -> list[dict[str, Any]]:
@@ -76,12 +76,12 @@ class Statements(ABC):
                 "comment": stage.comment,
                 "lines": [line for step in stage.steps for line in self._statement(step)],
             }
-            for stage in self.rail.stages
+            for stage in self.program.stages
         ]
 
     def literals(self) -> Iterator[tuple[str, str, bool]]:
         """The name, the input and the sign of each literal."""
-        for literal in self.rail.literals:
+        for literal in self.program.literals:
             yield self._literal(literal), self.names[literal.proposition], literal.positive
 
     def _literal(self, literal: Literal) -> str:

@@ -66,8 +66,8 @@ def _of_settings(settings: Settings) -> Iterator[Acceptance | Diagnostic]:
     """The acceptances of the settings, the most specific (of one topic or hazard) first."""
     for code, reasons in settings.accept.items():
         for subject, reason in reasons.items() if isinstance(reasons, Mapping) else ():
-            place = settings.place("accept", code, subject)
-            yield _acceptance(code, reason, place, subject=subject)
+            span = settings.place("accept", code, subject)
+            yield _acceptance(code, reason, span, subject=subject)
     for code, reasons in settings.accept.items():
         if isinstance(reasons, str):
             yield _acceptance(code, reasons, settings.place("accept", code))
@@ -76,34 +76,34 @@ def _of_settings(settings: Settings) -> Iterator[Acceptance | Diagnostic]:
 def _acceptance(
     number: str,
     reason: str,
-    place: Span,
+    span: Span,
     requirement: RequirementEntry | None = None,
     subject: str = "",
 ) -> Acceptance | Diagnostic:
     code = _CODES.get(number)
     if code is None:
         fix = did_you_mean(number, _CODES, "write the number that the warning begins with")
-        return _bad(f"`{number}` is not a code of fretc", place, fix)
+        return _bad(f"`{number}` is not a code of fretc", span, fix)
     about = explanation(code).accept
     if not about:
         fix = f"fix the cause: `fretc explain {number}` says how"
-        return _bad(f"{number} cannot be accepted: {code.summary}", place, fix)
+        return _bad(f"{number} cannot be accepted: {code.summary}", span, fix)
     where, example = ACCEPTANCES[about]
     line = example.format(number).removeprefix("[accept]\n")
     fix = f"write `{line}` in {where}{'' if about == REQUIREMENT else ', under `[accept]`'}"
     if requirement is not None and about != REQUIREMENT:
-        return _bad(f"{number} is not about one requirement", place, fix)
+        return _bad(f"{number} is not about one requirement", span, fix)
     if subject and about not in (TOPIC, HAZARD):
-        return _bad(f"{number} is not about a topic or a hazard", place, fix)
+        return _bad(f"{number} is not about a topic or a hazard", span, fix)
     if not reason.strip():
         return _bad(
-            f"{number} is accepted without a reason", place, "write why the warning is acceptable"
+            f"{number} is accepted without a reason", span, "write why the warning is acceptable"
         )
-    return Acceptance(code, reason.strip(), place, requirement, subject)
+    return Acceptance(code, reason.strip(), span, requirement, subject)
 
 
-def _bad(message: str, place: Span, fix: str) -> Diagnostic:
-    return Diagnostic(Code.BAD_ACCEPTANCE, message, place, help=fix)
+def _bad(message: str, span: Span, fix: str) -> Diagnostic:
+    return Diagnostic(Code.BAD_ACCEPTANCE, message, span, help=fix)
 
 
 _ByCode = Mapping[tuple[Code, str], Sequence[Acceptance]]
@@ -135,12 +135,12 @@ def _answers(diagnostic: Diagnostic, by_code: _ByCode) -> Iterator[Acceptance]:
     """The acceptances of a warning, the most specific first."""
     if diagnostic.severity is not Severity.WARNING:
         return
-    place = diagnostic.span
-    if place is not None and place.source.name:
-        headers = by_code.get((diagnostic.code, place.source.name), ())
-        before = bisect_right(headers, place.end, key=lambda acceptance: acceptance.span.start)
+    span = diagnostic.span
+    if span is not None and span.source.name:
+        headers = by_code.get((diagnostic.code, span.source.name), ())
+        before = bisect_right(headers, span.end, key=lambda acceptance: acceptance.span.start)
         around = headers[max(0, before - 1) : before + 1]  # a header begins above its acceptance
-        yield from (e for e in around if e.requirement and e.requirement.contains(place))
+        yield from (e for e in around if e.requirement and e.requirement.contains(span))
     others = by_code.get((diagnostic.code, ""), ())
     yield from (
         acceptance for acceptance in others if acceptance.subject in ("", diagnostic.subject)

@@ -103,8 +103,8 @@ def _without_circles(tables: Mapping[str, dict[str, Any]], source: Source) -> It
             kept = {assignment_field(table["role"]): lustre(values.pop(name)) or ""}
             table["fret"] = kept | table.get("fret", {})
             del table["value"]
-        place = Source(source.name, "").span()
-        yield diagnostic("circular_assignments", place, names=" -> ".join(names[:12]))
+        span = Source(source.name, "").span()
+        yield diagnostic("circular_assignments", span, names=" -> ".join(names[:12]))
 
 
 def _variable(record: Mapping[str, Any]) -> dict[str, Any]:
@@ -182,8 +182,8 @@ def _merged(
     differences = ", ".join(
         f"{key} `{second.get(key, second_fields.get(key, ''))}`" for key in lost
     )
-    place = Source(source.name, "").span()
-    return diagnostic("merged_variable", place, name=name, differences=differences)
+    span = Source(source.name, "").span()
+    return diagnostic("merged_variable", span, name=name, differences=differences)
 
 
 def _plain(value: Any) -> Any:

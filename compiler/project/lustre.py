@@ -104,10 +104,10 @@ def _after_pre(lexemes: list[str], arrow: int) -> int:
     if lexemes[start] != "(":
         is_name = re.fullmatch(r"[A-Za-z_]\w*", lexemes[start]) and lexemes[start] not in _WORDS
         return start + 1 if is_name and lexemes[start + 1 : start + 2] != ["("] else 0
-    for place in range(start, len(lexemes)):
-        level += {"(": 1, ")": -1}.get(lexemes[place], 0)
+    for index in range(start, len(lexemes)):
+        level += {"(": 1, ")": -1}.get(lexemes[index], 0)
         if level == 0:
-            return place + 1
+            return index + 1
     return 0
 
 

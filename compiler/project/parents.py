@@ -121,9 +121,9 @@ def _missing_extra(settings: Settings, name: str) -> Diagnostic:
 
 def _place(settings: Settings, name: str) -> Span:
     tables = settings.tables
-    place = tables.value("tool", "fretc", "parents") if tables else Source(name, "").span()
-    at = place.text.find(name)
-    return place.part(at, at + len(name)) if at >= 0 else place
+    span = tables.value("tool", "fretc", "parents") if tables else Source(name, "").span()
+    at = span.text.find(name)
+    return span.part(at, at + len(name)) if at >= 0 else span
 
 
 def _read(path: Path, name: str) -> Iterator[Parent]:

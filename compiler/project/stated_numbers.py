@@ -73,14 +73,14 @@ def _parameters(
 ) -> Iterator[Diagnostic]:
     """F310; a number of `params` belongs to a proposition, or to a compared signal."""
     for name, text in requirement.entry.params.items():
-        place = requirement.entry.place("params", name)
+        span = requirement.entry.place("params", name)
         propositions = _propositions(requirement, declarations, name)
         mistaken = {("proposition", name), ("signal", name)} & declarations.mistakes.keys()
         if not propositions and not mistaken:
-            yield diagnostic("unbound_parameter", place, name=name)
+            yield diagnostic("unbound_parameter", span, name=name)
             continue
         if units.quantity(text) is None:
-            yield diagnostic("parameter_not_quantity", place, text=text)
+            yield diagnostic("parameter_not_quantity", span, text=text)
         elif _has_drifted(text, propositions):
             yield diagnostic("parameter_drift", propositions[0].span, text=text, name=name)
 
@@ -160,10 +160,10 @@ def _quantities(text: str) -> Iterator[tuple[str, Exact]]:
 
 
 def _differs(
-    requirement: FormalizedRequirement, field: str, words: str, place: Span, elsewhere: Span | None
+    requirement: FormalizedRequirement, field: str, words: str, span: Span, elsewhere: Span | None
 ) -> Diagnostic:
-    at = place.text.find(words)
-    where = place.part(at, at + len(words)) if at >= 0 else place
+    at = span.text.find(words)
+    where = span.part(at, at + len(words)) if at >= 0 else span
     other = ""
     if elsewhere is not None:
         other = f": {elsewhere.text} ({elsewhere.source.name}:{elsewhere.line}:{elsewhere.column})"

@@ -53,12 +53,12 @@ def _changes(whole: e.Expression) -> Iterator[ExpressionChange]:
 def _within(whole: e.Expression) -> Iterator[ExpressionChange]:
     """Changes of one operand."""
     operands = e.children(whole)
-    for place, operand in enumerate(operands):
+    for index, operand in enumerate(operands):
         own = [*_changes(operand)]
         if not isinstance(whole, e.Not):  # its operand negated is the whole negated
             own.insert(0, _replaced("negated", operand, opposite(operand)))
         for change in own:
-            parts = (*operands[:place], change.whole, *operands[place + 1 :])
+            parts = (*operands[:index], change.whole, *operands[index + 1 :])
             yield replace(change, whole=e.with_children(whole, parts))
 
 
@@ -71,8 +71,8 @@ def _dropped(whole: e.Expression) -> Iterator[ExpressionChange]:
     """The changes that drop one operand of a conjunction or disjunction."""
     if not isinstance(whole, e.And | e.Or):
         return
-    for place, operand in enumerate(whole.args):
-        rest = (*whole.args[:place], *whole.args[place + 1 :])
+    for index, operand in enumerate(whole.args):
+        rest = (*whole.args[:index], *whole.args[index + 1 :])
         text = expression(operand)
         less = rest[0] if len(rest) == 1 else replace(whole, args=rest)
         yield ExpressionChange("dropped", text, f"without `{text}`", less)

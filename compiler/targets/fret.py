@@ -304,8 +304,8 @@ def variables(
 def _is_of(variable: tuple[str, str, str], named: tuple[str, str, str]) -> bool:
     """Whether a sentence names the variable; hand-written bindings need not name a component."""
     return variable[2] == named[2] and all(
-        a == b or not a or (place == 0 and not b)
-        for place, (a, b) in enumerate(zip(variable[:2], named[:2], strict=True))
+        a == b or not a or (index == 0 and not b)
+        for index, (a, b) in enumerate(zip(variable[:2], named[:2], strict=True))
     )
 
 

@@ -73,8 +73,8 @@ def _runs(counted: Automaton) -> Iterator[tuple[str, tuple[int, ...]]]:
     run_to: dict[int, tuple[int, ...]] = {0: ()}
     broken: tuple[int, ...] | None = None
     for state in range(len(counted.states)):  # in the order in which they were found
-        for place, after in enumerate(counted.moves[state]):
-            run = (*run_to[state], place)
+        for index, after in enumerate(counted.moves[state]):
+            run = (*run_to[state], index)
             if after != BROKEN:
                 run_to.setdefault(after, run)
             elif broken is None or len(run) < len(broken):
@@ -97,8 +97,8 @@ def _ticks(
 ) -> Iterator[RepeatedTick]:
     """The run with the verdicts after each of its ticks."""
     state, ticks = 0, list[tuple[tuple[bool, ...], str, bool]]()
-    for values, place in run:
-        state = counted.moves[state][place]
+    for values, index in run:
+        state = counted.moves[state][index]
         if state == BROKEN:
             ticks.append((values, "violated", False))
         else:

@@ -93,13 +93,13 @@ def analyze(
         assumptions: the assumptions about the environment.
         options: time limits, and whether FRET's question is answered.
     """
-    found: list[Finding] = []
+    findings: list[Finding] = []
     for job in jobs(requirements, roles, assumptions, options):
         try:
-            found.extend(job.ask(found))
+            findings.extend(job.ask(findings))
         except MemoryError:
-            found.append(job.lost("there is not enough memory for its decision diagrams"))
-    return assembled(requirements, roles, assumptions, options, found)
+            findings.append(job.out_of_memory())
+    return assembled(requirements, roles, assumptions, options, findings)
 
 
 Question = Callable[[RealizabilityProblem, Budget], Iterator[Finding]]
@@ -359,8 +359,8 @@ def assembled(
     )
 
 
-def _of(kind: type[F], found: Sequence[Finding]) -> tuple[F, ...]:
-    return tuple(each for each in found if isinstance(each, kind))
+def _of(kind: type[F], findings: Sequence[Finding]) -> tuple[F, ...]:
+    return tuple(each for each in findings if isinstance(each, kind))
 
 
 def _looks_back(requirement: FormalizedRequirement) -> bool:
@@ -397,11 +397,11 @@ def _fought(component: Component, conflicts: Sequence[frozenset[str]]) -> Compon
 
 
 def _consistent(
-    requirements: Sequence[FormalizedRequirement], found: Sequence[Consistency]
+    requirements: Sequence[FormalizedRequirement], answers: Sequence[Consistency]
 ) -> bool | None:
-    if any(each.holds is False for each in found):
+    if any(each.holds is False for each in answers):
         return False
-    known = {id for each in found if each.holds for id in each.requirements}
+    known = {id for each in answers if each.holds for id in each.requirements}
     return True if known.issuperset(requirement.id for requirement in requirements) else None
 
 

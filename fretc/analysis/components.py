@@ -17,7 +17,7 @@ Tokens = frozenset[str]
 
 def tokens(requirement: FormalizedRequirement, roles: Roles, *kinds: Role) -> Tokens:
     """Variables of these roles that a requirement reads; for a bound proposition, its signals."""
-    found: set[str] = set()
+    names: set[str] = set()
     for name in requirement.variables:
         if roles[name] in kinds:
             bound = (
@@ -25,8 +25,8 @@ def tokens(requirement: FormalizedRequirement, roles: Roles, *kinds: Role) -> To
                 if requirement.declarations
                 else None
             )
-            found.update(bound.signals if bound else (name,))
-    return frozenset(found)
+            names.update(bound.signals if bound else (name,))
+    return frozenset(names)
 
 
 def by_outputs(

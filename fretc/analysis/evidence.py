@@ -195,22 +195,22 @@ class AnalyzedSet:
 def read(path: str) -> AnalyzedSet | Diagnostic:
     """Read and check a file of `fretc analyze`."""
     again = "analyze again: `fretc analyze FILE...`"
-    found = records.read(path, AnalysisDocument, "fretc analyze", again)
-    if isinstance(found, Diagnostic):
-        return found
-    source, content = found
+    file = records.read(path, AnalysisDocument, "fretc analyze", again)
+    if isinstance(file, Diagnostic):
+        return file
+    source, content = file
     mistake = _contradiction(content)
     if mistake:
-        place = Source(source.name, "").span()
+        span = Source(source.name, "").span()
         what = f"contradicts itself: {mistake}"
-        return diagnostic("bad_result_file", place, path=source.name, what=what, help=again)
+        return diagnostic("bad_result_file", span, path=source.name, what=what, help=again)
     return AnalyzedSet(source.name, sha256(source.text), content)
 
 
 def known(path: str | None) -> AnalyzedSet | Diagnostic | None:
     """The analysis of a file, or of the default file if it exists; None: there is none."""
-    place = path or default_path()
-    return read(place) if place is not None else None
+    file = path or default_path()
+    return read(file) if file is not None else None
 
 
 def default_path() -> str | None:
@@ -218,10 +218,10 @@ def default_path() -> str | None:
     return DEFAULT if Path(DEFAULT).exists() else None
 
 
-def _contradiction(found: AnalysisDocument) -> str:
+def _contradiction(document: AnalysisDocument) -> str:
     """Why the verdict does not follow from the findings; empty if it does."""
-    analysis = found.analysis
-    ids = found.requirements.keys()
+    analysis = document.analysis
+    ids = document.requirements.keys()
     named = {id for each in analysis.components for id in each.requirements}
     named |= {id for each in analysis.conflicts for id in each.requirements}
     if not named <= ids:

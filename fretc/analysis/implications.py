@@ -52,21 +52,21 @@ def consistency(
     """Whether any run satisfies all requirements."""
     ids = tuple(requirement.id for requirement in setting.requirements)
     question = f"whether any run satisfies {listed(ids)}"
-    doubt = setting.left_out or setting.of_inputs or setting.of_outputs
+    uncertainty = setting.left_out or setting.of_inputs or setting.of_outputs
     try:
         there = setting.close(ids, budget)
         counters = there.counters(ids)
         is_possible = there.runs(counters, budget).is_possible()
-        if is_possible and setting.left_out is None and doubt is not None:
+        if is_possible and setting.left_out is None and uncertainty is not None:
             is_certain = there.runs(counters, budget, certain=True).is_possible()
-            doubt = None if is_certain else doubt
+            uncertainty = None if is_certain else uncertainty
     except OutOfTimeError as error:
         yield Consistency(ids, None)
         yield OpenQuestion(question, str(error))
         return
-    if is_possible and doubt is not None:
+    if is_possible and uncertainty is not None:
         yield Consistency(ids, None)
-        yield OpenQuestion(question, doubt)
+        yield OpenQuestion(question, uncertainty)
     else:
         yield Consistency(ids, is_possible)
 
@@ -160,12 +160,12 @@ def vacuities(setting: RealizabilityProblem, budget: Budget) -> Iterator[Vacuity
     for counter in setting.arena.counters:
         others = [each.id for each in setting.arena.counters if each is not counter]
         try:
-            found = _vacuity(setting, requirements[counter.id], counter, others, budget.again())
+            vacuity = _vacuity(setting, requirements[counter.id], counter, others, budget.again())
         except OutOfTimeError as error:
             yield OpenQuestion(f"whether {counter.id} is ever triggered", str(error))
             continue
-        if found is not None:
-            yield found
+        if vacuity is not None:
+            yield vacuity
 
 
 def _vacuity(
@@ -205,25 +205,25 @@ def inconsistencies(
     """
     if len(setting.requirements) == 1:
         return
-    doubt = setting.of_inputs or setting.of_outputs
+    uncertainty = setting.of_inputs or setting.of_outputs
     counters = setting.arena.counters
     names = listed([requirement.id for requirement in setting.requirements])
     question = f"whether a run can make {names} impossible to satisfy together"
-    if doubt is not None:
-        yield OpenQuestion(question, doubt)
+    if uncertainty is not None:
+        yield OpenQuestion(question, uncertainty)
         return
-    found: list[frozenset[str]] = []
+    groups: list[frozenset[str]] = []
     try:
         alone = {counter.id: setting.runs((counter,), budget).lasting() for counter in counters}
         for members in _candidates(setting, counters):
             ids = frozenset(member.id for member in members)
-            if any(smaller <= ids for smaller in found):
+            if any(smaller <= ids for smaller in groups):
                 continue
-            if len(members) > _FEW and found:
+            if len(members) > _FEW and groups:
                 continue
             clash = _inconsistency(setting, members, alone, budget)
             if clash is not None:
-                found.append(ids)
+                groups.append(ids)
                 yield clash
     except OutOfTimeError as error:
         yield OpenQuestion(question, str(error))

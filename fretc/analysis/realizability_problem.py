@@ -82,15 +82,16 @@ class RealizabilityProblem:
     def _apart(self, ids: frozenset[str], budget: Budget) -> RealizabilityProblem:
         """A problem of some of the requirements; this problem, if the other one is less exact."""
         try:
-            found = interleaved(self, ids, budget)
+            problem = interleaved(self, ids, budget)
         except UnsupportedError:
             return self
-        counted = [{each.id for each in there.counters(ids)} for there in (self, found)]
-        mine, its = self.arena.alphabet, found.arena.alphabet
+        counted = [{each.id for each in there.counters(ids)} for there in (self, problem)]
+        mine, its = self.arena.alphabet, problem.arena.alphabet
         is_known = all(
-            its.doubtful(role) <= mine.doubtful(role) for role in (Role.INPUT, Role.OUTPUT)
+            its.uncertain_atoms(role) <= mine.uncertain_atoms(role)
+            for role in (Role.INPUT, Role.OUTPUT)
         )
-        return found if is_known and counted[0] == counted[1] else self
+        return problem if is_known and counted[0] == counted[1] else self
 
     def game(self, counters: Sequence[RequirementCounter], budget: Budget) -> Game:
         """The game of some counters, under all assumptions."""
@@ -144,7 +145,7 @@ class RealizabilityProblem:
         if not self.arena.alphabet.is_refinable or self.steps >= _MOST_STEPS:
             return None
         steps, near = 2 * self.steps or 1, self.assumptions
-        found = _built(
+        problem = _built(
             self.requirements,
             near,
             self.roles,
@@ -153,9 +154,9 @@ class RealizabilityProblem:
             as_fret=self.as_fret,
             steps=steps,
         )
-        if (found.left_out, found.of_outputs) != (self.left_out, self.of_outputs):
+        if (problem.left_out, problem.of_outputs) != (self.left_out, self.of_outputs):
             return None  # Solving more than that takes too long.
-        return None if found.arena.size == self.arena.size else found
+        return None if problem.arena.size == self.arena.size else problem
 
     def runs(
         self,
@@ -205,24 +206,24 @@ class RealizabilityProblem:
     @property
     def certain(self) -> tuple[RequirementCounter, ...]:
         """Counters of requirements for which the environment has only possible valuations."""
-        doubtful = self.arena.alphabet.doubtful(Role.INPUT)
-        if any(not doubtful.isdisjoint(_atoms(requirement)) for requirement in self.assumptions):
+        uncertain = self.arena.alphabet.uncertain_atoms(Role.INPUT)
+        if any(not uncertain.isdisjoint(_atoms(requirement)) for requirement in self.assumptions):
             return ()
         return self.counters(
             requirement.id
             for requirement in self.requirements
-            if doubtful.isdisjoint(_atoms(requirement))
+            if uncertain.isdisjoint(_atoms(requirement))
         )
 
     @property
     def of_inputs(self) -> str | None:
         """Why the environment has valuations that may be impossible; None: it has none."""
-        return self.arena.alphabet.doubts.get(Role.INPUT)
+        return self.arena.alphabet.uncertainties.get(Role.INPUT)
 
     @property
     def of_outputs(self) -> str | None:
         """Why the system has valuations that may be impossible; None: it has none."""
-        return self.arena.alphabet.doubts.get(Role.OUTPUT)
+        return self.arena.alphabet.uncertainties.get(Role.OUTPUT)
 
     @property
     def left_out(self) -> str | None:

@@ -201,15 +201,15 @@ def _triggered(
     setting: _ConflictSetting, there: RealizabilityProblem, counters: Sequence[RequirementCounter]
 ) -> frozenset[str]:
     """Ids of the requirements whose triggers can occur in a run that satisfies the assumptions."""
-    found: set[str] = set()
+    atoms: set[str] = set()
     for counter in counters:
         runs = there.runs((), setting.budget, watched=(counter,))
         lasting = runs.lasting()
         if (runs.transition.initial & lasting) == bdd.false():
             return frozenset()  # No run satisfies the assumptions.
         if runs.can_reach(counter.triggered, lasting):
-            found.add(counter.id)
-    return frozenset(found)
+            atoms.add(counter.id)
+    return frozenset(atoms)
 
 
 # Bounds ----------------------------------------------------------------------------------------
@@ -275,8 +275,8 @@ def _bounded(requirement: FormalizedRequirement, ticks: int) -> FormalizedRequir
     timing = cast("Within | For", requirement.written.timing)
     duration = in_unit(ticks, timing.duration.unit, requirement.clock)
     changed = replace(requirement.written, timing=replace(timing, duration=duration))
-    found = _formalized(requirement.id, printed(changed), requirement)
-    return found if found is not None and found.ticks == ticks else None
+    bounded = _formalized(requirement.id, printed(changed), requirement)
+    return bounded if bounded is not None and bounded.ticks == ticks else None
 
 
 # Assumptions -----------------------------------------------------------------------------------
@@ -297,14 +297,14 @@ def _assumptions(setting: _ConflictSetting) -> Iterator[Rules]:
         yield from _kept(setting, f"immediately satisfy !{name}")
     apart: set[frozenset[str]] = set()
     for pair in combinations(inputs, 2):
-        for found in _kept(setting, f"never satisfy {' & '.join(pair)}"):
+        for repair in _kept(setting, f"never satisfy {' & '.join(pair)}"):
             apart.add(frozenset(pair))
-            yield found
+            yield repair
     for first, then in permutations(inputs, 2):
         if frozenset((first, then)) not in apart:
-            for found in _distances(setting, (f"whenever {first}", then)):
+            for repair in _distances(setting, (f"whenever {first}", then)):
                 apart.add(frozenset((first, then)))
-                yield found
+                yield repair
     for name in inputs:
         yield from _distances(setting, (f"whenever !{name} & preBool(false, {name})", name))
     for one, other in combinations(inputs, 2):
@@ -328,15 +328,15 @@ def _lost(setting: _ConflictSetting) -> Function | None:
 def _inputs(setting: _ConflictSetting) -> dict[str, Function]:
     """Propositions of the conflict that the environment chooses, as spelled in sentences."""
     roles, alphabet = setting.whole.roles, setting.whole.arena.alphabet
-    found: dict[str, Function] = {}
+    functions: dict[str, Function] = {}
     for requirement in setting.requirements:
         for atom, part in candidates(requirement.sentence):
             names = [name.id for name in e.names(part)]
             calls = any(isinstance(each, e.Call) for each in e.parts(part))
             if names and not calls and all(roles.get(name) is Role.INPUT for name in names):
                 text = expression(part)
-                found[text if isinstance(part, e.Name) else f"({text})"] = alphabet.atom(atom)
-    return found
+                functions[text if isinstance(part, e.Name) else f"({text})"] = alphabet.atom(atom)
+    return functions
 
 
 def _kept(setting: _ConflictSetting, *wordings: str) -> Iterator[Rules]:

@@ -133,14 +133,14 @@ def drawn(play: Sequence[Mapping[str, object]], roles: Mapping[str, Role]) -> It
     names = lanes(play, roles)
     if not names:  # There is no tick, or no variable because only outputs are compared.
         return
-    found = columns(play, names)
+    lines = columns(play, names)
     width = max(len("tick"), *(len(_lane(name, roles)) for name in names))
-    for start in range(0, len(found), _WIDEST):
-        shown = found[start : start + _WIDEST]
+    for start in range(0, len(lines), _WIDEST):
+        shown = lines[start : start + _WIDEST]
         widths = [max(len(each.head), *map(len, each.values)) for each in shown]
         yield _row("tick", [each.head for each in shown], width, widths)
-        for place, name in enumerate(names):
-            yield _row(_lane(name, roles), [each.values[place] for each in shown], width, widths)
+        for index, name in enumerate(names):
+            yield _row(_lane(name, roles), [each.values[index] for each in shown], width, widths)
 
 
 @dataclass(frozen=True, slots=True)

@@ -90,12 +90,12 @@ def _verdict(setting: RealizabilityProblem, budget: Budget) -> tuple[Realizabili
     """The verdict with its reason."""
     _check_assumptions(setting, budget)
     if not _is_lost(setting, [counter.id for counter in setting.arena.counters], budget):
-        doubt = setting.left_out or setting.of_outputs
-        if doubt is None:
+        uncertainty = setting.left_out or setting.of_outputs
+        if uncertainty is None:
             return RealizabilityVerdict.REALIZABLE, "the system has a strategy"
     else:
-        doubt = setting.of_inputs
-        if doubt is None:
+        uncertainty = setting.of_inputs
+        if uncertainty is None:
             return RealizabilityVerdict.UNREALIZABLE, "the environment wins"
         generous, ids = (
             setting.generous(budget),
@@ -106,7 +106,7 @@ def _verdict(setting: RealizabilityProblem, budget: Budget) -> tuple[Realizabili
         answer = _unrolled(setting, budget) if generous is not setting else None
         if answer is not None:
             return answer
-    return RealizabilityVerdict.NOT_CHECKED, doubt
+    return RealizabilityVerdict.NOT_CHECKED, uncertainty
 
 
 _WHATEVER = "whatever the unknown values are"
@@ -158,11 +158,11 @@ def strategy(
     ids = tuple(requirement.id for requirement in setting.requirements)
     try:
         game = setting.game(setting.arena.counters, budget)
-        found = machine(game, game.solution(), budget)
+        controller = machine(game, game.solution(), budget)
         if form is ControllerFormat.PYTHON:
-            yield circuit(found, ids, number)
+            yield circuit(controller, ids, number)
         else:
-            yield mealy(found, ids, budget)
+            yield mealy(controller, ids, budget)
     except (UnsupportedError, NoMachineError, OutOfTimeError) as error:
         yield OpenQuestion(f"how can {', '.join(ids)} be satisfied?", str(error))
 
@@ -213,10 +213,10 @@ def conflicts(
     except UnsupportedError as error:
         yield OpenQuestion(question, str(error))
         return
-    if (doubt := found.doubt) is None:
+    if (uncertainty := found.uncertainty) is None:
         yield Completeness(tuple(requirement.id for requirement in setting.requirements))
     else:
-        yield OpenQuestion(question, doubt)
+        yield OpenQuestion(question, uncertainty)
 
 
 def _perhaps_larger(conflict: Conflict) -> Conflict:
@@ -262,13 +262,13 @@ class _Fights:
         return self.strict if known.issuperset(ids) else self.generous
 
     @property
-    def doubt(self) -> str | None:
+    def uncertainty(self) -> str | None:
         """Why there may be more conflicts; None: there are no others."""
-        doubt = self.strict.left_out or self.generous.of_inputs or self.strict.of_outputs
-        if doubt is None and self.smaller:
+        uncertainty = self.strict.left_out or self.generous.of_inputs or self.strict.of_outputs
+        if uncertainty is None and self.smaller:
             which = "; ".join(map(listed, self.smaller))
             return f"{self.strict.of_inputs}; that decides whether these can be satisfied: {which}"
-        return doubt
+        return uncertainty
 
 
 def _minimal(
@@ -287,8 +287,8 @@ def _minimal(
         at_once = switched(there.game(there.counters(ids), budget), there.fresh)
         if at_once is not None:
             return map(chosen, at_once.cores(budget))
-    found = cores(len(ids), lambda members: _is_lost(there, chosen(members), budget), near)
-    return map(chosen, found)
+    conflicting = cores(len(ids), lambda members: _is_lost(there, chosen(members), budget), near)
+    return map(chosen, conflicting)
 
 
 _SHORT = 200

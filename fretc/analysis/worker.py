@@ -47,11 +47,11 @@ def findings(jobs: Sequence[Job[F]], progress: Callable[[str], None]) -> Iterato
     if not FORKS:
         yield from _findings_here(jobs, progress)
         return
-    found: list[F] = []
+    earlier: list[F] = []
     with _interruption() as is_stopped:
         number = 0
         while number < len(jobs) and not is_stopped():
-            process, answers = _started(jobs[number:], found)
+            process, answers = _started(jobs[number:], earlier)
             is_full = False
             progress(jobs[number].title)
             try:
@@ -62,7 +62,7 @@ def findings(jobs: Sequence[Job[F]], progress: Callable[[str], None]) -> Iterato
                     if isinstance(finding, Exception):
                         raise finding
                     if finding is not None:
-                        found.append(finding)
+                        earlier.append(finding)
                         yield finding
                         continue
                     number += 1
@@ -75,9 +75,9 @@ def findings(jobs: Sequence[Job[F]], progress: Callable[[str], None]) -> Iterato
                 process.join()
                 answers.close()
             if number < len(jobs) and not is_stopped():
-                why = _FULL if is_full else _ending(process.exitcode or 0)
-                found.append(jobs[number].lost(why))
-                yield found[-1]
+                job, status = jobs[number], process.exitcode or 0
+                earlier.append(job.out_of_memory(_LIMIT) if is_full else job.lost(_ending(status)))
+                yield earlier[-1]
                 number += 1
         if is_stopped():
             for job in jobs[number:]:
@@ -92,16 +92,16 @@ def missing_limits() -> tuple[Diagnostic, ...]:
 
 def _findings_here(jobs: Sequence[Job[F]], progress: Callable[[str], None]) -> Iterator[F]:
     """The same in this process: Ctrl-C interrupts a question, and nothing limits its memory."""
-    found: list[F] = []
+    earlier: list[F] = []
     for number, job in enumerate(jobs):
         progress(job.title)
         try:
-            for finding in with_recursion_limit(job.ask)(found):
-                found.append(finding)
+            for finding in with_recursion_limit(job.ask)(earlier):
+                earlier.append(finding)
                 yield finding
         except MemoryError:
-            found.append(job.lost("it took more memory than there is"))
-            yield found[-1]
+            earlier.append(job.out_of_memory())
+            yield earlier[-1]
         except KeyboardInterrupt:
             for rest in jobs[number:]:
                 yield rest.lost("stopped by Ctrl-C")
@@ -110,12 +110,12 @@ def _findings_here(jobs: Sequence[Job[F]], progress: Callable[[str], None]) -> I
 
 def finished(jobs: Sequence[Job[F]], progress: Callable[[str], None]) -> tuple[list[F], bool]:
     """The findings of the jobs, and whether Ctrl-C has stopped them."""
-    found: list[F] = []
+    answers: list[F] = []
     try:
-        found.extend(findings(jobs, progress))
+        answers.extend(findings(jobs, progress))
     except Interrupted:
-        return found, True
-    return found, False
+        return answers, True
+    return answers, False
 
 
 @contextmanager
@@ -150,31 +150,31 @@ _PATIENCE = 0.1
 """Seconds between two checks for Ctrl-C."""
 
 
-def _started(jobs: Sequence[Job[F]], found: Sequence[F]) -> tuple[BaseProcess, Connection]:
+def _started(jobs: Sequence[Job[F]], earlier: Sequence[F]) -> tuple[BaseProcess, Connection]:
     context: Any = multiprocessing.get_context("fork")
     ours, theirs = context.Pipe(duplex=False)
-    process = context.Process(target=_answer, args=(theirs, jobs, tuple(found)), daemon=True)
+    process = context.Process(target=_answer, args=(theirs, jobs, tuple(earlier)), daemon=True)
     with stops_blocked():
         process.start()
     theirs.close()
     return process, ours
 
 
-def _answer(connection: Connection, jobs: Sequence[Job[F]], found: Sequence[F]) -> None:
+def _answer(connection: Connection, jobs: Sequence[Job[F]], earlier: Sequence[F]) -> None:
     """Send each finding, None at the end of each job, and an internal error if there is one."""
     ignore_interrupts()
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # last words of a library
     ProcessLimits(address_space() + MEMORY)
     guard()
     with suppress(OSError):
-        is_complete, error = reply(_answer_all, connection, jobs, found)
+        is_complete, error = reply(_answer_all, connection, jobs, earlier)
         if not is_complete:
             connection.send(error)
 
 
 @with_recursion_limit
-def _answer_all(connection: Connection, jobs: Sequence[Job[F]], found: Sequence[F]) -> None:
-    known = list(found)
+def _answer_all(connection: Connection, jobs: Sequence[Job[F]], earlier: Sequence[F]) -> None:
+    known = list(earlier)
     for job in jobs:
         for finding in job.ask(known):
             known.append(finding)
@@ -182,14 +182,11 @@ def _answer_all(connection: Connection, jobs: Sequence[Job[F]], found: Sequence[
         connection.send(None)
 
 
-_FULL = (
-    f"it took more than {MEMORY // 2**30} GiB of memory, or more decision diagrams than their "
-    "table holds"
-)
+_LIMIT = f"{MEMORY // 2**30} GiB"
 
 
 def _ending(status: int) -> str:
     """Why the process ended before its answer."""
     if exceeded_time(status) or was_killed(status):
         return "it exceeded its time limit"
-    return f"it took more than {MEMORY // 2**30} GiB of memory, or failed (exit status {status})"
+    return f"it took more memory than {_LIMIT}, or failed (exit status {status})"

@@ -11,7 +11,7 @@ from compiler.targets.python import monitor as python
 from fretc.api.refusal import Refusal, bounded
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
-from monitors.kernel.stepping import Standing
+from monitors.kernel.stepping import RequirementStatus
 from monitors.kernel.variables import Value
 from monitors.kernel.verdicts import Verdict
 from monitors.loading import load
@@ -39,7 +39,7 @@ class Monitor(Protocol):
     ) -> Verdict | tuple[Verdict, ...]:
         """Process many ticks; a row has the values of all variables in order, or by name."""
 
-    def standings(self) -> tuple[Standing, ...]:
+    def statuses(self) -> tuple[RequirementStatus, ...]:
         """The verdict of each requirement if the trace ended now."""
 
     def verdicts(self) -> tuple[Verdict, ...]:

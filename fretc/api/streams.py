@@ -16,7 +16,7 @@ from fretish.bindings.declarations import Signal
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic, did_you_mean
 from fretish.diagnostics.messages import diagnostic
-from monitors.kernel.stepping import Standing
+from monitors.kernel.stepping import RequirementStatus, renamed
 from monitors.kernel.verdicts import Truth
 
 
@@ -29,8 +29,14 @@ class Tick:
     time_ns: int
     truth: Mapping[str, Truth]
     """Proposition → its value at the tick; None if unknown."""
-    standings: tuple[Standing, ...]
+    statuses: tuple[RequirementStatus, ...]
     """The verdict of each requirement if the trace ended here."""
+
+    @property
+    def standings(self) -> tuple[RequirementStatus, ...]:
+        """The former name of `statuses`; deprecated."""
+        renamed("standings", "statuses")
+        return self.statuses
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,7 +141,7 @@ class Stream:
 
     def _step(self, row: Row) -> Tick:
         self._monitors.step(row)
-        return Tick(self._monitors.count - 1, row.time, row.truth, self._monitors.standings())
+        return Tick(self._monitors.count - 1, row.time, row.truth, self._monitors.statuses())
 
 
 def _plan(project: Project) -> Plan:

@@ -68,15 +68,15 @@ def _envelopes(source: Source) -> tuple[Envelope, ...] | Diagnostic:
     envelopes = []
     start = 0
     for line in source.text.split("\n"):
-        place = source.span(start, start + len(line))
+        span = source.span(start, start + len(line))
         start += len(line) + 1
         if not line.strip():
             continue
         try:
             dsse = read_envelope(line)
-            envelopes.append(Envelope(dsse, read_statement(dsse.payload), place))
+            envelopes.append(Envelope(dsse, read_statement(dsse.payload), span))
         except SchemaError as error:
-            return _wrong(place, f"the line is not a signed statement of fretc: {error}")
+            return _wrong(span, f"the line is not a signed statement of fretc: {error}")
     return tuple(envelopes)
 
 
@@ -88,11 +88,11 @@ def envelope(line: str) -> Envelope:
     return Envelope(dsse, read_statement(dsse.payload), Source("", line).span())
 
 
-def _wrong(place: Span, what: str) -> Diagnostic:
+def _wrong(span: Span, what: str) -> Diagnostic:
     return Diagnostic(
         Code.BAD_SIGNATURES,
         what,
-        place.part(0, 0),
+        span.part(0, 0),
         help="restore the file from version control, or delete it and sign again: `fretc sign`",
     )
 

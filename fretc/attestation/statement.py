@@ -22,8 +22,8 @@ from compiler.files.records import UNSET
 from compiler.files.shell_quoting import is_sha256
 from compiler.logic.claims import Proof
 from fretc.analysis.evidence import AnalyzedSet
-from fretc.audit.evidence.basis import KINDS
 from fretc.audit.evidence.result_summaries import EvidenceSource, ResultSummary
+from fretc.audit.evidence.verdict_inputs import KINDS
 from fretc.traceability.lock import Review
 from fretc.traceability.waivers import Waiver
 from fretc.verification.reader import Proofs
@@ -180,12 +180,12 @@ def proofs(file: Proofs) -> Statement:
 
 def analysis(file: AnalyzedSet) -> Statement:
     """The statement about an analysis of requirements."""
-    found = file.document.analysis
+    content = file.document.analysis
     says = {
         "requirements": {id: each.sha256 for id, each in file.document.requirements.items()},
-        "verdict": found.verdict,
-        "conflicts": [list(conflict.requirements) for conflict in found.conflicts],
-        "assumptions": {assumption.id: assumption.sentence for assumption in found.assumptions},
+        "verdict": content.verdict,
+        "conflicts": [list(conflict.requirements) for conflict in content.conflicts],
+        "assumptions": {assumption.id: assumption.sentence for assumption in content.assumptions},
     }
     return Statement(ANALYSIS, (SignedItem(ANALYSIS, Path(file.file).name, file.sha256),), says)
 

@@ -47,8 +47,8 @@ def engine(name: str, jobs: int) -> Engine | Diagnostic:
             scheduler.
         jobs: the number of processes on this machine.
     """
-    place = urlsplit(name)
-    if name != SCHEME and not (place.scheme == SCHEME and _is_address(place.netloc)):
+    url = urlsplit(name)
+    if name != SCHEME and not (url.scheme == SCHEME and _is_address(url.netloc)):
         return diagnostic(
             "unknown_engine",
             name=name,
@@ -60,7 +60,7 @@ def engine(name: str, jobs: int) -> Engine | Diagnostic:
         return missing
     if name == SCHEME:
         return partial(_audit, lambda: _own_cluster(jobs))
-    return partial(_audit, lambda: _cluster_at(f"tcp://{place.netloc}"))
+    return partial(_audit, lambda: _cluster_at(f"tcp://{url.netloc}"))
 
 
 def _is_address(netloc: str) -> bool:

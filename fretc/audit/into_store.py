@@ -210,7 +210,7 @@ class StoreWriter:
         self._about = to_json(plain(about))
         self._authenticity = None if key is None else Authenticity(folder, self._about, key)
         self._file: StoreFile | None = None
-        self._places = {log: place for place, log in enumerate(logs)}
+        self._places = {log: index for index, log in enumerate(logs)}
         found = {log: self.earlier.find(log) for log in logs}
         self.known = {log: known for log, known in found.items() if known is not None}
         self.new = [log for log in logs if log not in self.known]
@@ -312,9 +312,9 @@ class StoreWriter:
         self._read += own.read
         self._pack(file, entry, with_command_labels(self._plan, own), log)
 
-    def _one(self, found: Diagnostic) -> Diagnostic:
+    def _one(self, diagnostic: Diagnostic) -> Diagnostic:
         """The diagnostic, or an equal one that is already in memory."""
-        return self._diagnostics.setdefault(found, found)
+        return self._diagnostics.setdefault(diagnostic, diagnostic)
 
     def _note(self, log: str, run: str, notes: tuple[Diagnostic, ...]) -> None:
         self._runs[log] = run
@@ -332,12 +332,12 @@ class StoreWriter:
 
     def _finish(self, file: StoreFile) -> StoredAudit:
         head, rows = document(self._plan, (), ()), file.close()
-        store = Store(str(self.folder), "", file.path, head, rows)
+        store = Store(str(self.folder), "", head, file.path, rows)
         estimates = estimates_of(self._plan, (each for _, each in store.summaries()))
         if self._read:  # a mistyped name must not cost the evidence of the last audit
             head = replace(head, probabilities=estimates or UNSET)
             sha256 = complete(file.path, head, rows)
-            store = Store(str(self.folder), sha256, publish(file.path), head, rows)
+            store = Store(str(self.folder), sha256, head, publish(file.path), rows)
             for path in self._stopped:
                 remove_file(path)
             earlier_store.remove_tables(self.folder)

@@ -13,7 +13,6 @@ from compiler.files.records import UNSET
 from compiler.files.records import replace as record_with
 from compiler.files.text_files import Stamp, file_sha256, stamp
 from fretc.audit.constancy import never_changed, tallies_of, totals
-from fretc.audit.evidence.basis import BINDINGS, SENTENCE, of_all
 from fretc.audit.evidence.claim import AuditedRequirement
 from fretc.audit.evidence.estimates import estimates, warnings
 from fretc.audit.evidence.probabilities import Estimated
@@ -29,6 +28,7 @@ from fretc.audit.evidence.schema import (
     Result,
     SituationRecord,
 )
+from fretc.audit.evidence.verdict_inputs import BINDINGS, SENTENCE, of_all
 from fretc.audit.evidence.writer import as_record, health, phases_of, unjudged_result, unread_result
 from fretc.audit.evidence.writer import text as written
 from fretc.audit.measurements.tallies import PropositionTally
@@ -358,9 +358,9 @@ def with_command_labels(plan: Plan, one: LogResult) -> LogResult:
 
 
 def _with_labels(
-    one: LogResult, found: Mapping[str, str], notes: Sequence[Diagnostic]
+    one: LogResult, labels: Mapping[str, str], notes: Sequence[Diagnostic]
 ) -> LogResult:
-    of_run = dict(sorted(found.items())) or UNSET
+    of_run = dict(sorted(labels.items())) or UNSET
     return replace(
         one,
         results=tuple(record_with(result, labels=of_run) for result in one.results),
@@ -381,7 +381,7 @@ def _refused_results(plan: Plan, sibling: Result) -> Iterator[Result]:
             sibling.run,
             refused.id,
             f"not judged: {'; '.join(f'{d.code.number} {d.message}' for d in refused.why)}",
-            {**log, **refused.basis},
+            {**log, **refused.verdict_inputs},
             sibling.health,
         )
 
@@ -408,7 +408,7 @@ def _unread(plan: Plan, log: str, why: Diagnostic, before: Stamp | None) -> LogR
     """
     hashes = _hash_of(log, before)
     records = [
-        unread_result(name_of(log), requirement.id, why, {**hashes, **requirement.basis})
+        unread_result(name_of(log), requirement.id, why, {**hashes, **requirement.verdict_inputs})
         for requirement in plan.named
     ]
     return _with_own_labels(plan, LogResult(tuple(records), (why,), read=False))
@@ -417,7 +417,7 @@ def _unread(plan: Plan, log: str, why: Diagnostic, before: Stamp | None) -> LogR
 def _unaudited(plan: Plan, log: str, why: Diagnostic) -> LogResult:
     """The results of a log that was not audited before the time limit: no data, and no hash."""
     records = [
-        unread_result(name_of(log), requirement.id, why, requirement.basis)
+        unread_result(name_of(log), requirement.id, why, requirement.verdict_inputs)
         for requirement in plan.named
     ]
     return _with_own_labels(plan, LogResult(tuple(records), (why,), read=False))
@@ -444,13 +444,15 @@ def document(
         fretc=__version__,
         bindings=BindingsRecord(
             plan.declarations.source.name,
-            of_all({requirement.id: requirement.basis[BINDINGS] for requirement in plan.named}),
+            of_all(
+                {requirement.id: requirement.verdict_inputs[BINDINGS] for requirement in plan.named}
+            ),
         ),
         requirements=tuple(
             RequirementRecord(
                 requirement.id,
                 requirement.sentence,
-                requirement.basis[SENTENCE],
+                requirement.verdict_inputs[SENTENCE],
                 situations=named_situations(requirement)
                 if isinstance(requirement, AuditedRequirement)
                 else UNSET,

@@ -175,7 +175,7 @@ def _evidence(
     margins_of: Mapping[str, tuple[Margin, ...]],
     near: Near,
     requirement: MonitoredRequirement,
-    found: Health,
+    health: Health,
 ) -> RunResult:
     monitor = requirement.monitor
     columns = {name: truths.columns[name] for name in requirement.propositions}
@@ -218,7 +218,7 @@ def _evidence(
         margins=tuple(margin for name in columns for margin in margins_of[name]),
         units={name: base_name(declarations.signals[name].unit.dimension) for name in signals},
         hashes={**hash_of(recording), **requirement.hashes},
-        health=found,
+        health=health,
         assumptions=_assumed(declarations, requirement),
         situations=_situations(requirement, columns, ticks, near, at),
         unknown_inputs=unknown_inputs(columns, at, declarations, recording)

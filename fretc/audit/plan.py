@@ -16,14 +16,14 @@ from compiler.formalization.record import wording
 from compiler.project.project import Project
 from compiler.situations.situations import situations
 from compiler.targets.python import monitor as monitors
-from fretc.audit.bases import bases
-from fretc.audit.evidence.basis import Basis
 from fretc.audit.evidence.claim import AuditedRequirement
 from fretc.audit.evidence.schema import SCHEMA, Selection
+from fretc.audit.evidence.verdict_inputs import VerdictInputs
 from fretc.audit.expected_response import demand
 from fretc.audit.measurements import confidence_intervals as intervals
 from fretc.audit.measurements.count_trials import chance, trials
 from fretc.audit.one_log import MonitoredRequirement
+from fretc.audit.project_inputs import all_verdict_inputs
 from fretc.audit.refusals import RefusedRequirement, refusals
 from fretc.logs.signals.integrity import Integrity
 from fretish.bindings.declarations import Declarations
@@ -97,12 +97,14 @@ def planned(
     if declarations is None or not requirements:
         return errors or (diagnostic("nothing_to_audit"),)
     texts = {requirement.entry: monitors.text(requirement) for requirement in requirements}
-    basis_of = bases(project, monitors={place: sha256(text) for place, text in texts.items()})
+    inputs_of = all_verdict_inputs(
+        project, monitors={place: sha256(text) for place, text in texts.items()}
+    )
     claims = tuple(
-        _claim(requirement, basis_of[requirement.entry], texts[requirement.entry])
+        _claim(requirement, inputs_of[requirement.entry], texts[requirement.entry])
         for requirement in requirements
     )
-    refused = tuple(_refused(basis_of, entry, why) for entry, why in unauditable)
+    refused = tuple(_refused(inputs_of, entry, why) for entry, why in unauditable)
     used = declarations.restricted_to(
         name for requirement in requirements for name in requirement.watched
     )
@@ -112,18 +114,20 @@ def planned(
 
 
 def _refused(
-    basis_of: Mapping[RequirementEntry, Basis],
+    inputs_of: Mapping[RequirementEntry, VerdictInputs],
     requirement: RequirementEntry,
     why: tuple[Diagnostic, ...],
 ) -> RefusedRequirement:
-    return RefusedRequirement(requirement.id, wording(requirement), basis_of[requirement], why)
+    return RefusedRequirement(requirement.id, wording(requirement), inputs_of[requirement], why)
 
 
-def _claim(requirement: FormalizedRequirement, basis: Basis, monitor: str) -> AuditedRequirement:
+def _claim(
+    requirement: FormalizedRequirement, verdict_inputs: VerdictInputs, monitor: str
+) -> AuditedRequirement:
     return AuditedRequirement(
         requirement.id,
         wording(requirement.entry),
-        basis,
+        verdict_inputs,
         monitor,
         demand(requirement),
         situations(requirement, exact=True),
@@ -140,8 +144,12 @@ def _digest(
 ) -> str:
     """SHA-256 of the plan, with positions in the bindings: diagnostics name their lines."""
     digest = hashlib.sha256(pickle.dumps(declarations, protocol=5))
-    texts = [(c.id, c.sentence, dict(c.basis), c.monitor, astuple(c.demand)) for c in claims]
-    reasons = [(r.id, r.sentence, dict(r.basis), [d.message for d in r.why]) for r in refused]
+    texts = [
+        (c.id, c.sentence, dict(c.verdict_inputs), c.monitor, astuple(c.demand)) for c in claims
+    ]
+    reasons = [
+        (r.id, r.sentence, dict(r.verdict_inputs), [d.message for d in r.why]) for r in refused
+    ]
     parts = [SCHEMA, integrity, texts, reasons]
     digest.update(json.dumps(parts).encode())
     return digest.hexdigest()
@@ -171,7 +179,7 @@ def _letters(plan: Plan, claim: AuditedRequirement, propositions: Sequence[str])
     return [
         claim.id,
         claim.sentence,
-        dict(claim.basis),
+        dict(claim.verdict_inputs),
         claim.monitor,
         astuple(claim.demand),
         claim.chance and claim.chance.text,
@@ -201,7 +209,7 @@ def monitored_requirements(plan: Plan) -> tuple[MonitoredRequirement, ...]:
     return tuple(
         MonitoredRequirement(
             load(f"{claim.id}_monitor", claim.monitor),
-            claim.basis,
+            claim.verdict_inputs,
             claim.demand,
             partial(trials, claim.chance.obligation) if claim.chance else None,
             claim.chance.obligation.atoms if claim.chance else (),

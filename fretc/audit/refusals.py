@@ -8,7 +8,7 @@ from compiler.formalization.binding_agreement import unbound_propositions
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.project.project import Project
 from compiler.targets.python import monitor as monitors
-from fretc.audit.evidence.basis import Basis
+from fretc.audit.evidence.verdict_inputs import VerdictInputs
 from fretish.bindings.declarations import Declarations
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic, has_errors
@@ -18,11 +18,11 @@ from fretish.documents import RequirementEntry
 
 @dataclass(frozen=True, slots=True)
 class RefusedRequirement:
-    """A requirement that no log can be judged by: all its results are *no data*."""
+    """A requirement by which no log can be evaluated: all its results are *no data*."""
 
     id: str
     sentence: str
-    basis: Basis = field(compare=False)
+    verdict_inputs: VerdictInputs = field(compare=False)
     """The verdict inputs, as of an audited requirement; of the wording as it is if it cannot be
     formalized."""
     why: tuple[Diagnostic, ...]
@@ -70,6 +70,6 @@ def _unusable(project: Project, first: FormalizedRequirement) -> Diagnostic | No
 def _not_auditable(
     requirement: FormalizedRequirement, declarations: Declarations
 ) -> tuple[Diagnostic, ...]:
-    """The reasons why no log can be judged by a requirement; empty: one can."""
+    """The reasons why no log can be evaluated by a requirement; empty: one can."""
     refused = monitors.refuse(replace(requirement, pctl=None))
     return (*([refused] if refused else []), *unbound_propositions(requirement, declarations))

@@ -150,12 +150,12 @@ def campaign(
     with _place(folder, things) as logs:
         function = partial(_one, logs, folder is not None)
         with closing(map_processes(function, things, jobs)) as done:
-            for place, run in done:
+            for index, run in done:
                 if isinstance(run, WorkerDied):
                     raise RuntimeError(f"the process of a mission was killed: {run}")
-                runs[place] = run
+                runs[index] = run
                 tell(len(runs))
-    return [runs[place] for place in sorted(runs)]
+    return [runs[index] for index in sorted(runs)]
 
 
 @contextmanager

@@ -162,7 +162,7 @@ class SafetyFunction:
             truths[output.name] = stands
         self._last = time
         self._monitor.advance([truths])
-        (signal,) = self._monitor.must.signals()
+        (signal,) = self._monitor.certain.signals()
         self._demanded = bool(signal.trigger or signal.obligation_pending)
         return self._demanded
 

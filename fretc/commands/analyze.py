@@ -153,8 +153,8 @@ def asked(
     from fretc.analysis.worker import finished, missing_limits
 
     print_diagnostics(missing_limits())
-    found, stopped = finished(jobs(requirements, chosen, assumed, options), print_activity)
-    return assembled(requirements, chosen, assumed, options, found), stopped
+    answers, stopped = finished(jobs(requirements, chosen, assumed, options), print_activity)
+    return assembled(requirements, chosen, assumed, options, answers), stopped
 
 
 def _emit(

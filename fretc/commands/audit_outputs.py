@@ -133,7 +133,7 @@ def _is_evidence(path: Path) -> bool:
 
 def results(source: EvidenceSource) -> Iterator[Result]:
     """All results; those of a store are read in batches."""
-    places = [place for place, _ in source.summaries()]
+    places = [index for index, _ in source.summaries()]
     for start in range(0, len(places), _BATCH):
         yield from (result for _, result in source.details(places[start : start + _BATCH]))
 
@@ -151,10 +151,10 @@ def annotation_files(
     from fretc.audit.outputs.annotations import sidecars
     from fretc.audit.outputs.foxglove_layout import layout_file
 
-    found, place = [*bare(outcome.source, project)], Path(folder or "build/annotations")
+    results, out = [*bare(outcome.source, project)], Path(folder or "build/annotations")
     return {
-        **sidecars(found, project.formalized, place),
-        **layout_file(found, project.formalized, place),
+        **sidecars(results, project.formalized, out),
+        **layout_file(results, project.formalized, out),
     }
 
 
@@ -168,21 +168,21 @@ def text(
 
     if output_format == "json":
         return _json(outcome)
-    found = bare(outcome.source, project)
+    results = bare(outcome.source, project)
     if output_format == "junit":
-        return junit(found, outcome.estimates, project.requirements)
+        return junit(results, outcome.estimates, project.requirements)
     if output_format == "github":
-        return github(found, project.requirements, outcome.estimates)
+        return github(results, project.requirements, outcome.estimates)
     assert output_format == "sarif", "a choice of --format"
     diagnostics = (*project.diagnostics, *refusals, *outcome.diagnostics)
     together = [AllRuns.of(one) for one in outcome.estimates]
-    each = [OneRun.of(one) for one in found]
+    each = [OneRun.of(one) for one in results]
     return sarif(each, project.formalized, diagnostics, together, project.without_rule)
 
 
 def _json(outcome: CommandOutcome) -> str:
     """JSON array with an object for each run and requirement; an object with probabilities."""
-    found = [plain(each) for each in results(outcome.source)]
+    records = [plain(each) for each in results(outcome.source)]
     if not outcome.estimates:
-        return f"{to_json(found)}\n"
-    return f"{to_json({'results': found, 'probabilities': plain(tuple(outcome.estimates))})}\n"
+        return f"{to_json(records)}\n"
+    return f"{to_json({'results': records, 'probabilities': plain(tuple(outcome.estimates))})}\n"

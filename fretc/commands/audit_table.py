@@ -86,8 +86,8 @@ def _numbers(block: Sequence[int]) -> str:
 
 
 def _marks(grid: VerdictWords, id: str, block: Sequence[int]) -> Iterator[Piece]:
-    for place, run in enumerate(block):
-        gap = " " if place % _GROUP == 0 else ""
+    for index, run in enumerate(block):
+        gap = " " if index % _GROUP == 0 else ""
         word = grid.words[run].get(id)
         sign = sign_of(word) if word else None
         yield (f"{gap}{sign.glyph}", sign.colour) if sign else (f"{gap} ", None)

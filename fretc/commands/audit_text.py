@@ -109,11 +109,11 @@ def lines(subject: AuditText, screen: Screen, *, every: bool) -> Iterator[Line]:
 
 def _situations(subject: AuditText) -> Iterator[Line]:
     """Number of situations that the runs exercised, and the command that lists them."""
-    _, found = of_all_runs(subject.source)
-    if any(each.situations for each in found):
+    _, situations = of_all_runs(subject.source)
+    if any(each.situations for each in situations):
         printed = subject.places.evidence == "-"
         more = "" if printed else f": `fretc coverage{subject.places.evidence_option}` lists them"
-        yield ((visible(f"{in_counts(found)}{more}"), None),)
+        yield ((visible(f"{in_counts(situations)}{more}"), None),)
 
 
 def _listed(subject: AuditText, titles: Mapping[str, str], screen: Screen) -> Iterator[Line]:
@@ -159,8 +159,8 @@ def summary(subject: AuditText, status: int) -> dict[str, Any]:
 
 def _first_to_look_at(subject: AuditText, *, commands: bool = True) -> Iterator[str]:
     """The worst result, and the commands that show more; nothing if all are satisfied."""
-    place = subject.marks.worst
-    ((_, result),) = subject.source.details([place]) if place is not None else ((0, None),)
+    index = subject.marks.worst
+    ((_, result),) = subject.source.details([index]) if index is not None else ((0, None),)
     refuted = next((one for one in subject.estimates if one.answer == REFUTED), None)
     if refuted is not None and (result is None or longest(result) is None):
         id, where, details = refuted.requirement, f"{REFUTED} over all runs", [refuted.lines[0]]
@@ -172,8 +172,8 @@ def _first_to_look_at(subject: AuditText, *, commands: bool = True) -> Iterator[
     yield ""
     yield f"worst: {_name(subject, id)} {where}"
     yield from (f"  {line}" for line in details)
-    for place, command in enumerate(subject.places.commands(id) if commands else ()):
-        yield f"  {'more:' if place == 0 else '     '} {command}"
+    for index, command in enumerate(subject.places.commands(id) if commands else ()):
+        yield f"  {'more:' if index == 0 else '     '} {command}"
 
 
 def _details(result: Result, subject: AuditText) -> Iterator[str]:

@@ -116,8 +116,8 @@ def _project(requirements: str, bindings: str | None, replaced: str | None = Non
         if is_given("requirements"):
             fail(files)
         files = []
-    place = bindings or sibling_path(requirements, "bindings.toml")
-    project = load(files, place, reads=AUDIT_TABLES)
+    file = bindings or sibling_path(requirements, "bindings.toml")
+    project = load(files, file, reads=AUDIT_TABLES)
     relevant = [d for d in project.diagnostics if replaced is None or not _is_in(d, replaced)]
     if has_errors(relevant):
         fail_at_end()

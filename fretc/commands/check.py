@@ -123,40 +123,40 @@ def _found(project: Project, files: _Files, *, analyze: bool) -> list[Diagnostic
     from fretc.verification.reader import known as proven
 
     units = first_unit(project.formalized)
-    found = [units] if units is not None else []
+    diagnostics = [units] if units is not None else []
     audited = (required_source if is_given("evidence") else source)(files.evidence)
     results = audited if not isinstance(audited, Diagnostic) else None
     if isinstance(audited, Diagnostic) and audited.is_error:
-        found.append(audited)
-    proofs = _value(proven(files.verification), found) or ()
-    analyzed = _value(known_analysis(files.analysis), found)
+        diagnostics.append(audited)
+    proofs = _value(proven(files.verification), diagnostics) or ()
+    analyzed = _value(known_analysis(files.analysis), diagnostics)
     summaries = ResultSummaries.of(results) if results else None
     path = sibling_path(files.requirements, "fretc.lock")
-    lock = _value(read_lock(path), found) if path is not None else None
+    lock = _value(read_lock(path), diagnostics) if path is not None else None
     waivers, waived = {}, sibling_path(files.requirements, "waivers.toml")
     if waived is not None:
         known, wrong = read_waivers(waived, [r.id for r in project.requirements], today())
         waivers = {id: waiver for id, waiver in known.items() if waiver.covers(today())}
-        found.extend(wrong)
+        diagnostics.extend(wrong)
     assessed = assessments(project, summaries, lock, waivers, proofs, analyzed)
-    standings = [assessment.standing for assessment in assessed]
+    statuses = [assessment.review_status for assessment in assessed]
     if path is not None:
-        chains = [standing.chain for standing in standings]
+        chains = [status.chain for status in statuses]
         withdrawn = withdrawn_requirements(project.requirements, chains, lock)
-        found.extend(withdrawal_warnings(withdrawn, path))
-    found.extend(stale_evidence(assessed, summaries, files.evidence))
-    found.extend(idle_waivers(assessed))
-    found.extend(reason for _, why in refusals(project) for reason in why)
+        diagnostics.extend(withdrawal_warnings(withdrawn, path))
+    diagnostics.extend(stale_evidence(assessed, summaries, files.evidence))
+    diagnostics.extend(idle_waivers(assessed))
+    diagnostics.extend(reason for _, why in refusals(project) for reason in why)
     if analyze:
-        found.extend(_together(project.sound, analyzed))
-    found.extend(warnings(project, standings, lock, results))
-    return found
+        diagnostics.extend(_together(project.sound, analyzed))
+    diagnostics.extend(warnings(project, statuses, lock, results))
+    return diagnostics
 
 
-def _value(read: T | Diagnostic, found: list[Diagnostic]) -> T | None:
-    """The value; a diagnostic is added to `found` instead."""
+def _value(read: T | Diagnostic, diagnostics: list[Diagnostic]) -> T | None:
+    """The value; a diagnostic is added to `diagnostics` instead."""
     if isinstance(read, Diagnostic):
-        found.append(read)
+        diagnostics.append(read)
         return None
     return read
 
@@ -192,8 +192,8 @@ def _fix(folder: str) -> None:
     files = () if isinstance(paths, Diagnostic) else fixed_files(paths)
     write_outputs({Path(file.path): file.text for file in files})
     for fix in (fix for file in files for fix in file.fixes):
-        place = f"{fix.span.source.name}:{fix.span.line}:{fix.span.column}"
-        print_status(visible(f"fixed {place}: {fix.change}"))
+        location = f"{fix.span.source.name}:{fix.span.line}:{fix.span.column}"
+        print_status(visible(f"fixed {location}: {fix.change}"))
     if files:
         print_status("")
 

@@ -78,8 +78,8 @@ def mutate(
     from fretc.coverage import mutation_output, mutation_record
     from fretc.coverage.mutation import mutation_job, survey
 
-    (place,) = places([folder] if folder else [], requirements)
-    project, plan = planned_project(place, bindings)
+    (project_folder,) = places([folder] if folder else [], requirements)
+    project, plan = planned_project(project_folder, bindings)
     logs, _ = selected(paths)
     asked = mutation_job(project, plan)
     try:

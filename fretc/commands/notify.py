@@ -24,14 +24,14 @@ _PATIENCE = 60
 def words(command: str, option: str = "--notify") -> list[str]:
     """The command split into words, without a shell; exits if it is empty or cannot be split."""
     try:
-        found = shlex.split(command)
+        parts = shlex.split(command)
     except ValueError as error:
-        found, why = [], str(error).lower()
+        parts, why = [], str(error).lower()
     else:
         why = "it is empty"
-    if not found:
+    if not parts:
         fail(diagnostic("no_command_named", option=option, why=why))
-    return found
+    return parts
 
 
 def notify(command: Sequence[str], summary: Mapping[str, Any]) -> None:

@@ -216,10 +216,10 @@ def _where(why: Diagnostic) -> str:
     """Code and position of a diagnostic, as they are printed with it."""
     if why.span is None:
         return why.code.number
-    place = why.span.source.name
+    location = why.span.source.name
     if why.span.source.text:
-        place += f":{why.span.line}:{why.span.column}"
-    return f"{why.code.number} {place}"
+        location += f":{why.span.line}:{why.span.column}"
+    return f"{why.code.number} {location}"
 
 
 def _some(ids: Sequence[str]) -> str:

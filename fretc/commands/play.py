@@ -140,9 +140,9 @@ def _recorded(
         fail(*plan)
     print_diagnostics([*plan.refusals])
     for log in logs:
-        found = or_fail(of_log(known, plan, log))
-        print_diagnostics(found.findings)
-        yield found
+        starts = or_fail(of_log(known, plan, log))
+        print_diagnostics(starts.findings)
+        yield starts
 
 
 def of_files(

@@ -201,7 +201,7 @@ def diff(
     from compiler.files.templating import to_json
     from compiler.project.folder import load_folder
     from fretc.traceability.comparison import as_record, differences, text
-    from fretc.traceability.lock import Lock, standings
+    from fretc.traceability.lock import Lock, review_statuses
 
     project = or_fail(load_folder(requirements, bindings, hazards))
     chains, _ = _chains(project, requirements, evidence, verification, analysis)
@@ -212,7 +212,7 @@ def diff(
     base = Lock({id: review for id, review in base.reviews.items() if id not in refused})
     if refused and not sound:
         raise SystemExit(EXIT_USAGE)
-    changes = differences(standings(sound, base), base, project)
+    changes = differences(review_statuses(sound, base), base, project)
     if output_format == "json":
         click.echo(to_json([as_record(difference) for difference in changes]))
     else:

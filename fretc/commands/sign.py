@@ -203,8 +203,8 @@ def _json(path: str, verification: str | None) -> Signable:
     audited = read(path)
     if isinstance(audited, Diagnostic):
         fail(_as_error(audited))
-    place = verification or default_path()
-    return _evidence(audited, _proofs(place) if place is not None else None)
+    file = verification or default_path()
+    return _evidence(audited, _proofs(file) if file is not None else None)
 
 
 def _schema(source: Source) -> object:
@@ -407,8 +407,8 @@ def _public(path: str) -> str:
     """Fingerprint of a public key."""
     from fretc.attestation.signers import trusted
 
-    found = or_fail(trusted(path))
-    return next((signer.key.fingerprint for signer in found.signers), "")
+    people = or_fail(trusted(path))
+    return next((signer.key.fingerprint for signer in people.signers), "")
 
 
 # What must be signed ---------------------------------------------------------------------------

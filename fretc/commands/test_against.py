@@ -81,17 +81,17 @@ def test_program(checked: RequirementSet, options: ProgramOptions, protected: It
             stopped = True
     except (UnsupportedError, OutOfTimeError) as error:
         fail(diagnostic("no_conformance_test", error=error))
-    found = campaign.findings(words)
-    evidence = f"{to_json(plain(found))}\n"
+    findings = campaign.findings(words)
+    evidence = f"{to_json(plain(findings))}\n"
     if output == "-" or options.output_format == "json":
         click.echo(evidence, nl=False)
     else:
-        click.echo(coloured([*lines(found, chosen)]), nl=False)
+        click.echo(coloured([*lines(findings, chosen)]), nl=False)
     if output != "-":
         write_outputs({Path(output): evidence}, protected)
     if wrong is not None:
         print_diagnostics([wrong])
-    return EXIT_INTERRUPTED if stopped else _status(found, wrong)
+    return EXIT_INTERRUPTED if stopped else _status(findings, wrong)
 
 
 def _words(command: str) -> list[str]:

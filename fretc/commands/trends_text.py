@@ -196,20 +196,20 @@ def _groups(groups: Sequence[Group], sign: StatusSymbol, title: str) -> Iterator
 
 
 def _regressions(trends: Trends, screen: Screen) -> Iterator[Line]:
-    found = trends.with_finding(ComparisonFinding.REGRESSED)
-    if not found:
+    regressions = trends.with_finding(ComparisonFinding.REGRESSED)
+    if not regressions:
         return
     yield _BLANK
     yield _title(
         signs.BAD,
-        len(found),
+        len(regressions),
         f"regressed in {trends.compared.after} (medians), statistically significant",
     )
-    for one in found[:6]:
+    for one in regressions[:6]:
         ids = _column(one.measure.ids, _ID, screen)
         yield ((f"    {ids}  {one.measure} {one.worse}", None),)
-    if len(found) > 6:
-        yield ((f"    and {len(found) - 6} more: see --html or --format json", None),)
+    if len(regressions) > 6:
+        yield ((f"    and {len(regressions) - 6} more: see --html or --format json", None),)
 
 
 def _rest(trends: Trends) -> Iterator[Line]:

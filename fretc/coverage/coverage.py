@@ -44,7 +44,7 @@ class RecordedSituation:
     """Index of a run → first tick that certainly shows the situation."""
     perhaps: Mapping[int, Moment]
     """Index of another run → first tick that may show the situation."""
-    standing: CoverageStatus
+    status: CoverageStatus
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,9 +60,9 @@ class RequirementCoverage:
     unmeasured: tuple[int, ...]
     """The indices of other runs with a result."""
 
-    def of(self, standing: CoverageStatus) -> tuple[RecordedSituation, ...]:
+    def of(self, status: CoverageStatus) -> tuple[RecordedSituation, ...]:
         """The situations with this status."""
-        return tuple(situation for situation in self.situations if situation.standing is standing)
+        return tuple(situation for situation in self.situations if situation.status is status)
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,12 +100,12 @@ def of_all_runs(
     names: list[str] = []
     known: dict[tuple[str, str], int] = {}
     places: dict[str, dict[int, int]] = {}
-    for place, summary in source.summaries():
+    for index, summary in source.summaries():
         key = summary.run, summary.content
         if key not in known:
             known[key] = len(names)
             names.append(summary.run)
-        places.setdefault(summary.requirement, {})[place] = known[key]
+        places.setdefault(summary.requirement, {})[index] = known[key]
     return tuple(names), of_requirements(source, places)
 
 
@@ -119,11 +119,11 @@ def of_requirements(
         places: requirement → index of each counted result → index of its run.
     """
     ledgers = {requirement.id: _Ledger(requirement) for requirement in source.requirements}
-    of_place = {place: id for id, some in places.items() for place in some}
-    for place, shown in source.situations(ledgers.keys()):
-        id = of_place.get(place)
+    of_place = {index: id for id, some in places.items() for index in some}
+    for index, shown in source.situations(ledgers.keys()):
+        id = of_place.get(index)
         if id in ledgers:
-            ledgers[id].add(places[id][place], shown)
+            ledgers[id].add(places[id][index], shown)
     return tuple(ledger.coverage() for ledger in ledgers.values())
 
 
@@ -163,14 +163,14 @@ class _Ledger:
     def _situation(self, one: Named) -> RecordedSituation:
         seen, perhaps = self._seen[one.key], self._perhaps[one.key]
         perhaps = {run: moment for run, moment in perhaps.items() if run not in seen}
-        standing = CoverageStatus.NEVER if self._measured else CoverageStatus.NOT_MEASURED
+        status = CoverageStatus.NEVER if self._measured else CoverageStatus.NOT_MEASURED
         if seen or perhaps:
-            standing = CoverageStatus.SEEN if seen else CoverageStatus.PERHAPS
-        return RecordedSituation(one.key, one.words, seen, perhaps, standing)
+            status = CoverageStatus.SEEN if seen else CoverageStatus.PERHAPS
+        return RecordedSituation(one.key, one.words, seen, perhaps, status)
 
 
 def counts(requirements: Iterable[RequirementCoverage]) -> Counter[CoverageStatus]:
     """The number of situations of all requirements by status."""
     return Counter(
-        situation.standing for requirement in requirements for situation in requirement.situations
+        situation.status for requirement in requirements for situation in requirement.situations
     )

@@ -130,7 +130,7 @@ def unseen(covered: Coverage, known: Directions) -> Iterator[tuple[str, str]]:
     for requirement in covered.requirements:
         for situation in requirement.situations:
             direction = known.get((requirement.id, situation.key))
-            if situation.standing is not CoverageStatus.SEEN and (
+            if situation.status is not CoverageStatus.SEEN and (
                 direction is None or direction.way is Way.KEPT
             ):
                 yield requirement.id, situation.key

@@ -81,7 +81,7 @@ def _exact(aims: Sequence[frozenset[int]], candidates: Sequence[int]) -> list[in
     branches = [_Branch((), np.arange(len(aims)), np.arange(len(candidates)))]
     for _ in range(_NODES):
         if not branches:
-            return [candidates[place] for place in best]
+            return [candidates[index] for index in best]
         branch = branches.pop()
         if not len(branch.aims):
             best = [*branch.chosen] if len(branch.chosen) < len(best) else best

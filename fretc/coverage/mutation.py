@@ -160,9 +160,9 @@ def of_run(asked: MutationJob, log: str) -> RunSurvey | Diagnostic:
         if own.verdict != kernel.NO_DATA:
             known.add(batch.id)
         for mutant, other in zip(batch.mutants, others, strict=True):
-            found = difference(own, other)
-            if found is not None:
-                noticed[batch.id, mutant.key] = found
+            detected = difference(own, other)
+            if detected is not None:
+                noticed[batch.id, mutant.key] = detected
     return RunSurvey(frozenset(known), noticed)
 
 
@@ -272,23 +272,23 @@ def survey(
     known: set[str] = set()
     first: dict[tuple[str, str], tuple[int, MutantDifference]] = {}
     unread: dict[int, Diagnostic] = {}
-    for place, one in _each_run(asked, logs, jobs):
-        tell(logs[place])
+    for index, one in _each_run(asked, logs, jobs):
+        tell(logs[index])
         if isinstance(one, Diagnostic):
-            unread[place] = one
+            unread[index] = one
             continue
         known |= one.known
         for key, apart in one.noticed.items():
-            if key not in first or place < first[key][0]:
-                first[key] = place, apart
-    runs = [place for place in range(len(logs)) if place not in unread]
-    number = {place: run for run, place in enumerate(runs)}
+            if key not in first or index < first[key][0]:
+                first[key] = index, apart
+    runs = [index for index in range(len(logs)) if index not in unread]
+    number = {index: run for run, index in enumerate(runs)}
     return MutationResult(
-        tuple(name_of(logs[place]) for place in runs),
+        tuple(name_of(logs[index]) for index in runs),
         asked.batches,
         frozenset(known),
-        {key: (number[place], apart) for key, (place, apart) in first.items()},
-        tuple(unread[place] for place in sorted(unread)),
+        {key: (number[index], apart) for key, (index, apart) in first.items()},
+        tuple(unread[index] for index in sorted(unread)),
     )
 
 
@@ -296,13 +296,13 @@ def _each_run(
     asked: MutationJob, logs: Sequence[str], jobs: int
 ) -> Iterator[tuple[int, RunSurvey | Diagnostic]]:
     """(index of a log, its result), in the order of completion."""
-    files = [place for place, log in enumerate(logs) if log != STDIN]
+    files = [index for index, log in enumerate(logs) if log != STDIN]
     if STDIN in logs:  # Another process does not have this object.
         yield logs.index(STDIN), of_run(asked, STDIN)
     with closing(
-        map_processes(partial(of_run, asked), [logs[place] for place in files], jobs)
+        map_processes(partial(of_run, asked), [logs[index] for index in files], jobs)
     ) as done:
         for number, one in done:
-            place = files[number]
-            log = name_of(logs[place])
-            yield place, killed_diagnostic(log, str(one)) if isinstance(one, WorkerDied) else one
+            index = files[number]
+            log = name_of(logs[index])
+            yield index, killed_diagnostic(log, str(one)) if isinstance(one, WorkerDied) else one

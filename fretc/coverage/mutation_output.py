@@ -54,8 +54,8 @@ def _requirement(
             yield text, signs.UNKNOWN.colour
 
 
-def _how(found: tuple[int, MutantDifference], runs: tuple[str, ...]) -> str:
-    place, difference = found
+def _how(detection: tuple[int, MutantDifference], runs: tuple[str, ...]) -> str:
+    place, difference = detection
     at = "" if difference.tick is None else f", first at tick {difference.tick}"
     return f"{difference.other}, and the requirement {difference.own}, in {runs[place]}{at}"
 

@@ -85,10 +85,10 @@ def document(survey: MutationResult) -> MutationDocument:
 def _mutants(batches: MutantBatch, survey: MutationResult) -> Iterator[RecordedMutant]:
     for mutant in batches.mutants:
         key = batches.id, mutant.key
-        found = survey.noticed.get(key)
+        detection = survey.noticed.get(key)
         outcome: Outcome = "equivalent" if key in survey.equivalent else "not noticed"
-        outcome = outcome if found is None else "noticed"
-        notice = None if found is None else _notice(*found)
+        outcome = outcome if detection is None else "noticed"
+        notice = None if detection is None else _notice(*detection)
         yield RecordedMutant(mutant.key, mutant.words, written(mutant), outcome, notice)
     for mutant, why in batches.refused:
         same = (batches.id, mutant.key) in survey.equivalent
@@ -101,9 +101,9 @@ def written(mutant: Mutant) -> str:
     return sentence(mutant.requirement.written)
 
 
-def _notice(run: int, found: MutantDifference) -> MutantDetection:
+def _notice(run: int, difference: MutantDifference) -> MutantDetection:
     return MutantDetection(
-        run, cast("Verdict", found.own), cast("Verdict", found.other), found.tick
+        run, cast("Verdict", difference.own), cast("Verdict", difference.other), difference.tick
     )
 
 

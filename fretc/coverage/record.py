@@ -108,9 +108,9 @@ def document(covered: c.Coverage, known: Directions) -> CoverageDocument:
 
 def _situation(id: str, one: c.RecordedSituation, known: Directions) -> CoveredSituation:
     seen, perhaps = _sightings(one.seen), _sightings(one.perhaps)
-    found = None if one.standing is c.CoverageStatus.SEEN else known.get((id, one.key))
-    direction = None if found is None else found.text
-    return CoveredSituation(one.key, one.words, one.standing.value, seen, perhaps, direction)
+    known_direction = None if one.status is c.CoverageStatus.SEEN else known.get((id, one.key))
+    direction = None if known_direction is None else known_direction.text
+    return CoveredSituation(one.key, one.words, one.status.value, seen, perhaps, direction)
 
 
 def _sightings(moments: Mapping[int, Moment]) -> tuple[Sighting, ...]:

@@ -68,22 +68,22 @@ def _requirement(
     )
     yield f"{sign.glyph} {title}: {seen} of {of} situations seen{unmeasured}", sign.colour
     for situation in one.situations:
-        if every or situation.standing is not CoverageStatus.SEEN:
+        if every or situation.status is not CoverageStatus.SEEN:
             yield _situation(situation, runs)
         direction = directions.get((one.id, situation.key))
-        if direction is not None and situation.standing is not CoverageStatus.SEEN:
+        if direction is not None and situation.status is not CoverageStatus.SEEN:
             yield f"        {direction.text}", None
 
 
 def _situation(one: RecordedSituation, runs: tuple[str, ...]) -> Line:
-    sign = sign_of(one.standing)
-    text = f"    {sign.glyph} {one.words}: {_standing(one, runs)}"
+    sign = sign_of(one.status)
+    text = f"    {sign.glyph} {one.words}: {_status_words(one, runs)}"
     return text, sign.colour
 
 
-def sign_of(standing: CoverageStatus) -> StatusSymbol:
+def sign_of(status: CoverageStatus) -> StatusSymbol:
     """The symbol of a status."""
-    match standing:
+    match status:
         case CoverageStatus.SEEN:
             return signs.GOOD
         case CoverageStatus.PERHAPS | CoverageStatus.NOT_MEASURED:
@@ -91,26 +91,26 @@ def sign_of(standing: CoverageStatus) -> StatusSymbol:
         case CoverageStatus.NEVER:
             return signs.UNUSED
         case _:
-            assert_never(standing)
+            assert_never(status)
 
 
-def _standing(one: RecordedSituation, runs: tuple[str, ...]) -> str:
-    match one.standing:
+def _status_words(one: RecordedSituation, runs: tuple[str, ...]) -> str:
+    match one.status:
         case CoverageStatus.SEEN:
             many = f"seen in {count_of(len(one.seen), 'run')}, first" if len(runs) > 1 else "seen"
             return f"{many} {_first(one.seen, runs)}"
         case CoverageStatus.PERHAPS:
             return f"perhaps {_first(one.perhaps, runs)}, where some values are unknown"
         case CoverageStatus.NEVER | CoverageStatus.NOT_MEASURED:
-            return one.standing
+            return one.status
         case _:
-            assert_never(one.standing)
+            assert_never(one.status)
 
 
 def _first(moments: Mapping[int, Moment], runs: tuple[str, ...]) -> str:
     run = min(moments)
-    place = f" of {runs[run]}" if len(runs) > 1 else ""
-    return f"at {seconds(moments[run].seconds)}{place}"
+    of_run = f" of {runs[run]}" if len(runs) > 1 else ""
+    return f"at {seconds(moments[run].seconds)}{of_run}"
 
 
 def _runs(covered: Coverage, *, every: bool) -> Iterator[Line]:
@@ -125,9 +125,9 @@ def _runs(covered: Coverage, *, every: bool) -> Iterator[Line]:
     if len(covered.runs) < 2:
         return
     listed = covered.runs if every else covered.runs[:_MOST_NAMED]
-    for place, name in enumerate(listed):
-        only = f", {alone[place]} of them that no other run shows" if alone[place] else ""
-        yield f"{name}: {count_of(shown[place], 'situation')}{only}", None
+    for index, name in enumerate(listed):
+        only = f", {alone[index]} of them that no other run shows" if alone[index] else ""
+        yield f"{name}: {count_of(shown[index], 'situation')}{only}", None
     if len(listed) < len(covered.runs):
         yield f"and {len(covered.runs) - len(listed):,} more runs: `-v` lists them", None
 
@@ -137,7 +137,7 @@ def _least(covered: Coverage) -> Iterator[Line]:
     least, runs = covered.least, covered.runs
     if len(runs) < 2 or not least.runs:
         return
-    names = [runs[place] for place in least.runs[:_MOST_NAMED]]
+    names = [runs[index] for index in least.runs[:_MOST_NAMED]]
     more = f" and {len(least.runs) - len(names)} more" if len(least.runs) > len(names) else ""
     how = "the smallest set" if least.is_exact else "a smaller set may exist"
     verb = "shows" if len(least.runs) == 1 else "show"

@@ -23,7 +23,7 @@ from fretish.reading.limits import extend_budget
 
 
 def part(
-    log: OpenLog, sink: Sink, integrity: Integrity, place: Span, wanted: Collection[str] = ()
+    log: OpenLog, sink: Sink, integrity: Integrity, span: Span, wanted: Collection[str] = ()
 ) -> FileContents | Diagnostic:
     """The messages of one file, or the diagnostic that says why the file cannot be read.
 
@@ -31,15 +31,15 @@ def part(
         log: the file.
         sink: receives the messages.
         integrity: how thoroughly the file is checked beyond the messages.
-        place: the file, as named on the command line.
+        span: the file, as named on the command line.
         wanted: the keys of its metadata records that are wanted.
 
     Raises:
         BrokenError: the file does not match its index.
     """
     extend_budget(log.size)
-    contents = _read(log, sink, integrity, place, wanted)
-    return diagnostic("changed_log", place) if log.changed() else contents
+    contents = _read(log, sink, integrity, span, wanted)
+    return diagnostic("changed_log", span) if log.changed() else contents
 
 
 def only_grows(log: OpenLog) -> bool:
@@ -49,18 +49,18 @@ def only_grows(log: OpenLog) -> bool:
 
 
 def _read(
-    log: OpenLog, sink: Sink, integrity: Integrity, place: Span, wanted: Collection[str]
+    log: OpenLog, sink: Sink, integrity: Integrity, span: Span, wanted: Collection[str]
 ) -> FileContents | Diagnostic:
     log.stream.seek(0)
     start = log.stream.read(_BEGINNING)
     if not start:
-        return diagnostic("empty_log", place)
+        return diagnostic("empty_log", span)
     if integrity is not Integrity.INDEX:
         log.begin()
     for magic, read in CONTAINERS.items():
         if start.startswith(magic):
-            return read(log, start, sink, integrity, place, wanted)
-    return log_diagnostics.not_a_log(start, place)
+            return read(log, start, sink, integrity, span, wanted)
+    return log_diagnostics.not_a_log(start, span)
 
 
 def _bag(
@@ -68,12 +68,12 @@ def _bag(
     start: bytes,
     sink: Sink,
     integrity: Integrity,
-    place: Span,
+    span: Span,
     wanted: Collection[str],
 ) -> FileContents | Diagnostic:
     if log.file is None or log.same is None:
-        return diagnostic("bag_of_no_file", place)
-    contents = bags.read(log.file, log.same, start, sink, place)
+        return diagnostic("bag_of_no_file", span)
+    contents = bags.read(log.file, log.same, start, sink, span)
     if isinstance(contents, Diagnostic):
         return contents
     damages = (*contents.damages, *_reindexed(log.file, contents.span))
@@ -96,20 +96,20 @@ def _mcap(
     start: bytes,
     sink: Sink,
     integrity: Integrity,
-    place: Span,
+    span: Span,
     wanted: Collection[str],
 ) -> FileContents | Diagnostic:
     held = contents(log.stream, log.size, sink, integrity, wanted)
     if held.span is not None:
         digest = log.sha256() if held.checked.hashed else held.summary_sha256
-        notes = (diagnostic("without_crc", place),) if held.unprotected else ()
+        notes = (diagnostic("without_crc", span),) if held.unprotected else ()
         return FileContents(
             digest, log.size, held.span, held.damages, notes, held.checked, held.described
         )
     if held.cut is not None:
-        return log_diagnostics.truncated(held.cut, place)
+        return log_diagnostics.truncated(held.cut, span)
     if held.damages:
-        return diagnostic("no_whole_message", place, description=held.damages[0][0].description)
+        return diagnostic("no_whole_message", span, description=held.damages[0][0].description)
     return FileContents(log.sha256(), log.size, None, ())
 
 

@@ -42,30 +42,30 @@ _PACKED = {
 """First bytes of compressed files, and the command that unpacks them."""
 
 
-def not_a_log(start: bytes, place: Span) -> Diagnostic:
+def not_a_log(start: bytes, span: Span) -> Diagnostic:
     """A file of another kind, recognized by its first bytes."""
     for magic, (codec, command) in _PACKED.items():
         if start.startswith(magic):
-            return diagnostic("compressed_log", place, codec=codec, command=command)
-    return diagnostic("not_a_log", place)
+            return diagnostic("compressed_log", span, codec=codec, command=command)
+    return diagnostic("not_a_log", span)
 
 
-def truncated(cut: int, place: Span) -> Diagnostic:
+def truncated(cut: int, span: Span) -> Diagnostic:
     """A log without an end, and without a whole message before byte `cut`."""
-    return diagnostic("truncated_log", place, cut=cut)
+    return diagnostic("truncated_log", span, cut=cut)
 
 
-def too_long(length: int, ticks: int, clock: Clock, place: Span) -> Diagnostic:
+def too_long(length: int, ticks: int, clock: Clock, span: Span) -> Diagnostic:
     """A log with so many ticks that a time must be wrong."""
     return diagnostic(
-        "log_too_long", place, length=duration(length / _SECOND), ticks=ticks, time=clock.time
+        "log_too_long", span, length=duration(length / _SECOND), ticks=ticks, time=clock.time
     )
 
 
 # Damaged parts
 
 
-def damaged(damage: Damage, gap: Gap | None, origin: int, place: Span) -> Diagnostic:
+def damaged(damage: Damage, gap: Gap | None, origin: int, span: Span) -> Diagnostic:
     """One damaged part; its gap is in seconds from `origin`."""
     if damage.code in (Code.TRUNCATED_LOG, Code.REINDEXED) and gap is not None:
         description = (
@@ -75,7 +75,7 @@ def damaged(damage: Damage, gap: Gap | None, origin: int, place: Span) -> Diagno
             damage.code,
             f"{description}: complete messages end after {_seconds(gap[0] - origin)}; what "
             "follows is unknown",
-            place,
+            span,
             "violations up to there count, but no requirement counts as satisfied",
             Severity.WARNING,
         )
@@ -87,18 +87,18 @@ def damaged(damage: Damage, gap: Gap | None, origin: int, place: Span) -> Diagno
     return Diagnostic(
         damage.code,
         f"{where}{damage.description}; {lost}",
-        place,
+        span,
         "copy the log again from where it was recorded; a damaged log does not count as shown",
         Severity.WARNING,
     )
 
 
-def few(diagnostics: list[Diagnostic], place: Span) -> list[Diagnostic]:
+def few(diagnostics: list[Diagnostic], span: Span) -> list[Diagnostic]:
     """At most a page of diagnostics; the last one counts the others."""
     if len(diagnostics) <= _MOST:
         return diagnostics
     more, help_ = len(diagnostics) - _MOST, diagnostics[0].help
-    return [*diagnostics[:_MOST], diagnostic("more_damage", place, more=more, help=help_)]
+    return [*diagnostics[:_MOST], diagnostic("more_damage", span, more=more, help=help_)]
 
 
 # One topic
@@ -260,21 +260,21 @@ def unstamped(signal: Signal, shift: int) -> Diagnostic:
 
 
 def zero_stamps(
-    topic: str, place: Span | None, zero: int, count: int, time: TimeSource
+    topic: str, span: Span | None, zero: int, count: int, time: TimeSource
 ) -> Diagnostic:
     """F416: the publisher or the recorder never set the time of some messages."""
     return diagnostic(
-        "zero_stamps", place, zero=zero, count=count, topic=topic, help=_other_time(time)
+        "zero_stamps", span, zero=zero, count=count, topic=topic, help=_other_time(time)
     )
 
 
 def still_clock(
-    topic: str, place: Span | None, same: int, count: int, time: TimeSource
+    topic: str, span: Span | None, same: int, count: int, time: TimeSource
 ) -> Diagnostic:
     """F420: many messages in a row have the same time."""
     return diagnostic(
         "still_clock",
-        place,
+        span,
         topic=topic,
         same=same,
         count=count,

@@ -178,31 +178,31 @@ def _opened(
     vocabulary: MessageTexts | None = None,
 ) -> _Read | Diagnostic:
     """The log at a path: a file, standard input, a URL, or a folder of rosbag2."""
-    place = Source(name_of(path), "").span()
+    span = Source(name_of(path), "").span()
     try:
         if is_folder(path):
             run = partial(_folder, folder(path), asked)
-            return _tried(run, place, new, integrity, vocabulary)
+            return _tried(run, span, new, integrity, vocabulary)
         if not os.path.lexists(path) and (parts := split(path)) is not None:
-            return _tried(partial(_folder, parts, asked), place, new, integrity, vocabulary)
+            return _tried(partial(_folder, parts, asked), span, new, integrity, vocabulary)
         with opened(path, whole=integrity is not Integrity.INDEX) as log:
             if isinstance(log, Diagnostic):
                 return log
-            found = _tried(partial(_file, path, log, asked), place, new, integrity, vocabulary)
+            found = _tried(partial(_file, path, log, asked), span, new, integrity, vocabulary)
             if not (isinstance(found, Diagnostic) and log.changed() and containers.only_grows(log)):
                 return found
             held = log.beginning()
             if held is None:
                 return found
             begun = partial(_beginning, path, held, asked)
-            return _tried(begun, place, new, integrity, vocabulary)
+            return _tried(begun, span, new, integrity, vocabulary)
     except OSError as error:
-        return storage_diagnostics.unreadable(error, place)
+        return storage_diagnostics.unreadable(error, span)
 
 
 def _tried(
     use: Callable[[Sink, Integrity, Span], _LogContents | Diagnostic],
-    place: Span,
+    span: Span,
     new: Callable[[], Columns],
     integrity: Integrity,
     vocabulary: MessageTexts | None,
@@ -211,12 +211,12 @@ def _tried(
     columns = new()
     examples = FirstMessages(columns, vocabulary)
     try:
-        run = use(examples, integrity, place)
+        run = use(examples, integrity, span)
     except BrokenError:
         assert integrity is not Integrity.FULL
-        return _tried(use, place, new, Integrity.FULL, vocabulary)
+        return _tried(use, span, new, Integrity.FULL, vocabulary)
     columns.settle()
-    return run if isinstance(run, Diagnostic) else (place, run, columns, examples)
+    return run if isinstance(run, Diagnostic) else (span, run, columns, examples)
 
 
 def _file(
@@ -262,7 +262,7 @@ def _beginning(
     return replace(run, notes=(*run.notes, diagnostic("grown_log", place, size=f"{log.size:,}")))
 
 
-def _alone(path: str, place: Span) -> Iterator[Diagnostic]:
+def _alone(path: str, span: Span) -> Iterator[Diagnostic]:
     """Diagnostics of a file that is only a part of a run."""
     parent, name = os.path.split(path)
     try:
@@ -276,7 +276,7 @@ def _alone(path: str, place: Span) -> Iterator[Diagnostic]:
         about, whole = bags_of_run, f"'{run_name(bags_of_run)}'"
     else:
         return
-    yield storage_diagnostics.part_of_a_run(about.files.index(name), len(about.files), whole, place)
+    yield storage_diagnostics.part_of_a_run(about.files.index(name), len(about.files), whole, span)
 
 
 def _folder(
@@ -284,39 +284,39 @@ def _folder(
     asked: Collection[str],
     one: Sink,
     integrity: Integrity,
-    place: Span,
+    span: Span,
 ) -> _LogContents | Diagnostic:
     """The files of one run, in the order of its metadata."""
     sink = RenumberingSink(one)
     if isinstance(about, Diagnostic):
         return about
     if about.compressed:
-        return diagnostic("compressed_run", place, mode=about.compressed)
+        return diagnostic("compressed_run", span, mode=about.compressed)
     paths = [os.path.join(about.path, name) for name in about.files]
     places = [Source(name_of(path), "").span() for path in paths]
-    found: list[FileContents | Diagnostic] = []
+    contents: list[FileContents | Diagnostic] = []
     for path, file in zip(paths, places, strict=True):
         sink.next_file()
         with opened(path) as log:
-            found.append(
+            contents.append(
                 log
                 if isinstance(log, Diagnostic)
                 else containers.part(log, sink, integrity, file, asked)
             )
-    parts = [part for part in found if isinstance(part, FileContents)]
+    parts = [part for part in contents if isinstance(part, FileContents)]
     spans = [part.span for part in parts if part.span is not None]
     if not spans:
-        wrong = [part for part in found if isinstance(part, Diagnostic)]
-        return wrong[0] if wrong else diagnostic("empty_log", place)
-    damages = list(_losses(about, places, found))
+        wrong = [part for part in contents if isinstance(part, Diagnostic)]
+        return wrong[0] if wrong else diagnostic("empty_log", span)
+    damages = list(_losses(about, places, contents))
     if about.messages not in (None, sink.counted) and not damages:
         lost = (min(a for a, _ in spans), max(b for _, b in spans))
         what = f"its {METADATA} states {about.messages} messages, but its files hold {sink.counted}"
         damage = Damage(NOWHERE, what, code=Code.COUNT_MISMATCH)
-        damages.append((place, damage, lost if sink.counted < (about.messages or 0) else None))
+        damages.append((span, damage, lost if sink.counted < (about.messages or 0) else None))
     hashes = {
         name: part.sha256
-        for name, part in zip(about.files, found, strict=True)
+        for name, part in zip(about.files, contents, strict=True)
         if isinstance(part, FileContents)
     }
     notes = {note.message: note for part in parts for note in part.notes}
@@ -330,11 +330,11 @@ def _folder(
 
 
 def _losses(
-    about: Folder, places: Sequence[Span], found: Sequence[FileContents | Diagnostic]
+    about: Folder, places: Sequence[Span], contents: Sequence[FileContents | Diagnostic]
 ) -> Iterator[tuple[Span, Damage, Gap | None]]:
     """The damages of all files, in their order; an unreadable file is one damage."""
-    parts = [part if isinstance(part, FileContents) else None for part in found]
-    for i, (place, part) in enumerate(zip(places, found, strict=True)):
+    parts = [part if isinstance(part, FileContents) else None for part in contents]
+    for i, (place, part) in enumerate(zip(places, contents, strict=True)):
         before, after = around(parts, i)
         if isinstance(part, FileContents):
             for damage, gap in widened(part, before, after):
@@ -344,11 +344,11 @@ def _losses(
             yield place, Damage(NOWHERE, what, code=Code.LOST_PART), about.lost(i, before, after)
 
 
-def _too_long(recording: Recording, clock: Clock, place: Span) -> Diagnostic | None:
+def _too_long(recording: Recording, clock: Clock, span: Span) -> Diagnostic | None:
     length = recording.end_ns - recording.start_ns
     if clock.period is None or length // clock.period < _MOST_TICKS:
         return None
-    return log_diagnostics.too_long(length, length // clock.period, clock, place)
+    return log_diagnostics.too_long(length, length // clock.period, clock, span)
 
 
 def _recording(

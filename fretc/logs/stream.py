@@ -78,8 +78,8 @@ class _Span:
 
     def holds(self, ticks: Sequence[int]) -> bool:
         """Whether the span contains one of the ticks, which are in order."""
-        place = bisect_left(ticks, self.first)
-        return place < len(ticks) and ticks[place] <= self.last
+        index = bisect_left(ticks, self.first)
+        return index < len(ticks) and ticks[index] <= self.last
 
 
 class SampleStream:
@@ -198,8 +198,8 @@ class SampleStream:
         self.late[topic] += 1
         is_tick = topic == self._declarations.clock.topic
         if is_tick:
-            place = bisect_right(self._recent, time)
-            self._recent = self._within_reach([*self._recent[:place], time, *self._recent[place:]])
+            index = bisect_right(self._recent, time)
+            self._recent = self._within_reach([*self._recent[:index], time, *self._recent[index:]])
         return Withdrawn(time, judged, self._readers(topic), time if is_tick else None)
 
     def _readers(self, topic: str) -> tuple[str, ...]:
@@ -438,9 +438,9 @@ class _Queue:
         self.count += 1
         if kind is not None:
             self.kind = kind if self.kind is None else np.promote_types(self.kind, kind)
-        place = bisect_right(self.times, time)
-        self.times.insert(place, time)
-        self.values.insert(place, value)
+        index = bisect_right(self.times, time)
+        self.times.insert(index, time)
+        self.values.insert(index, value)
 
     def forget(self, start: int) -> None:
         """Drop the samples before the one that is in force when the window starts."""

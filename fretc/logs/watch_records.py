@@ -74,14 +74,14 @@ _SHOWN = 80
 """The most characters of an untrusted text."""
 
 
-def watched(columns: Columns, described: Mapping[str, tuple[str, ...]], place: Span) -> Watched:
+def watched(columns: Columns, described: Mapping[str, tuple[str, ...]], span: Span) -> Watched:
     """The facts in the records of a log, with a diagnostic for each.
 
     Missed messages count whatever the clock, and even at unknown times: they only make propositions
     unknown.
     """
     lost, gaps = _missed(described.get(f"{WATCH}.missed", ()))
-    findings = [_missing(gaps, place)] if lost else []
+    findings = [_missing(gaps, span)] if lost else []
     if not columns.clock.declared:
         return Watched(missed=gaps, lost=lost, findings=tuple(findings))
     stated = {key: described[key] for key in _OF_GRID if key in described}
@@ -89,10 +89,10 @@ def watched(columns: Columns, described: Mapping[str, tuple[str, ...]], place: S
         stated.pop(f"{GRID}.origin", None)
     grid = _grid(stated, columns)
     if isinstance(grid, str):
-        return Watched(None, 0, gaps, lost, (*findings, _refused(grid, place)))
+        return Watched(None, 0, gaps, lost, (*findings, _refused(grid, span)))
     origin, until = grid
     if origin is not None or until:
-        findings.append(_taken_over(origin, until, columns, place))
+        findings.append(_taken_over(origin, until, columns, span))
     return Watched(origin, until, gaps, lost, tuple(findings))
 
 
@@ -150,22 +150,22 @@ def _fits(origin: int, columns: Columns) -> bool:
     return int(most.min()) <= origin < latest + clock.period
 
 
-def _taken_over(origin: int | None, until: int, columns: Columns, place: Span) -> Diagnostic:
+def _taken_over(origin: int | None, until: int, columns: Columns, span: Span) -> Diagnostic:
     start = columns.span((origin or until, 0))[0]
     parts = []
     if origin is not None:
         parts.append(f"the grid of ticks begins {in_words(origin - start)} after the first message")
     if until > start:
         parts.append(f"it was watched for {seconds((until - start) / 1e9)}")
-    return diagnostic("watch_grid_taken", place, taken=", and ".join(parts))
+    return diagnostic("watch_grid_taken", span, taken=", and ".join(parts))
 
 
-def _refused(why: str, place: Span) -> Diagnostic:
-    return diagnostic("watch_grid_ignored", place, why=why)
+def _refused(why: str, span: Span) -> Diagnostic:
+    return diagnostic("watch_grid_ignored", span, why=why)
 
 
-def _missing(gaps: Sequence[Gap], place: Span) -> Diagnostic:
+def _missing(gaps: Sequence[Gap], span: Span) -> Diagnostic:
     length = sum(b - a for a, b in gaps)
     times = "once" if len(gaps) == 1 else f"{len(gaps)} times"
     how = f"{times}, for {seconds(length / 1e9)} in all: messages of these times are unknown"
-    return diagnostic("watch_missed_messages", place, when=how if gaps else "at unknown times")
+    return diagnostic("watch_missed_messages", span, when=how if gaps else "at unknown times")

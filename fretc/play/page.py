@@ -142,11 +142,11 @@ def _data(
 ) -> dict[str, Any]:
     front = made.front or InputAdapter({}, {})
     variables = [*front.inputs] or [*made.propositions]
-    places = {name: place for place, name in enumerate(variables)}
+    places = {name: index for index, name in enumerate(variables)}
     reads = {name: [places[name]] for name in made.propositions if name in places}
     for name, compared in front.comparisons.items():
         reads[name] = [places[each] for each in compared.inputs]
-    ids = {requirement.id: place for place, requirement in enumerate(requirements)}
+    ids = {requirement.id: index for index, requirement in enumerate(requirements)}
     return {
         "most": MOST,
         "period": _period(requirements[0]),
@@ -163,11 +163,11 @@ def _data(
         "variables": [_variable(name, front) for name in variables],
         "comparisons": [
             {
-                "proposition": place,
+                "proposition": index,
                 "label": visible(_written(name, requirements).strip("()")),
                 "limit": _limit(front.comparisons[name], places),
             }
-            for place, name in enumerate(made.propositions)
+            for index, name in enumerate(made.propositions)
             if name in front.comparisons
         ],
         "groups": [*_groups(made.propositions, front, places)],
@@ -243,12 +243,12 @@ def _tree(formula: f.Formula, propositions: Sequence[str]) -> list[Any]:
 
 def _variable(name: str, front: InputAdapter) -> dict[str, Any]:
     own = [comparison for comparison in front.comparisons.values() if name in comparison.inputs]
-    found = front.inputs.get(name)
+    given = front.inputs.get(name)
     unit = next((comparison.units[name][0] for comparison in own if name in comparison.units), "")
     candidates: list[Any] = []
-    if found is not None and found.words:
-        candidates = [*found.words]
-    elif found is not None and found.kind == NUMBER:
+    if given is not None and given.words:
+        candidates = [*given.words]
+    elif given is not None and given.kind == NUMBER:
         limits = [
             each[1] for comparison in own if (each := threshold(comparison)) and each[0] == name
         ]
@@ -265,23 +265,23 @@ def _variable(name: str, front: InputAdapter) -> dict[str, Any]:
 def _written(name: str, requirements: Sequence[FormalizedRequirement]) -> str:
     """A comparison, as written in the first sentence that contains it."""
     return next(
-        (found for requirement in requirements if (found := requirement.wordings.get(name))), name
+        (text for requirement in requirements if (text := requirement.wordings.get(name))), name
     )
 
 
 def _limit(compared: CompiledComparison, places: Mapping[str, int]) -> tuple[int, float] | None:
     """A threshold: the index of its variable, and the number."""
-    found = threshold(compared)
-    value = _finite(found[1]) if found else None
-    return (places[found[0]], value) if found and value is not None else None
+    limit = threshold(compared)
+    value = _finite(limit[1]) if limit else None
+    return (places[limit[0]], value) if limit and value is not None else None
 
 
 def _finite(value: Fraction) -> float | None:
     try:
-        found = float(value)
+        number = float(value)
     except OverflowError:
         return None
-    return found if isfinite(found) else None
+    return number if isfinite(number) else None
 
 
 def _candidates(limits: Sequence[Fraction]) -> list[float]:

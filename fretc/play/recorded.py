@@ -177,8 +177,8 @@ class RecordedRun:
     def _window(self, first: int, last: int) -> tuple[int, int] | None:
         """First and last tick of a window that shows a violation; None if it would be too long."""
         end = min(self._ticks - 1, last + _AROUND, first + _AFTER)
-        place = bisect_right(self._outcome.triggers, first)
-        trigger = self._outcome.triggers[place - 1] if place else first
+        index = bisect_right(self._outcome.triggers, first)
+        trigger = self._outcome.triggers[index - 1] if index else first
         deadline_ticks = self._monitor.REQUIREMENTS[0].deadline_ticks or 0
         for begin, older in (
             (min(trigger, first - deadline_ticks), 0),
@@ -213,11 +213,11 @@ class RecordedRun:
     def _signals(self, columns: Mapping[str, Column], ticks: int) -> tuple[int, ...]:
         """The monitor outputs for the certain and the possible value, as columns."""
         every = (1 << ticks) - 1
-        rails = [
-            self._monitor.columns(every, **literals_of(self._monitor, columns, every, doubt))
-            for doubt in (False, True)
+        approximations = [
+            self._monitor.columns(every, **literals_of(self._monitor, columns, every, is_possible))
+            for is_possible in (False, True)
         ]
-        return tuple(column & every for (signals,) in rails for column in signals)
+        return tuple(column & every for (signals,) in approximations for column in signals)
 
     def _rows(self, first: int, last: int) -> Iterator[Ticks]:
         """Consecutive equal ticks, with their count."""

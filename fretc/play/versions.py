@@ -140,13 +140,13 @@ def _meanings(
     requirement: FormalizedRequirement, declarations: Declarations | None
 ) -> dict[tuple[str, str], Any]:
     """(kind, name) → its table in the bindings, or None, for each name that a requirement reads."""
-    found: dict[tuple[str, str], Any] = {
+    meanings: dict[tuple[str, str], Any] = {
         ("proposition", name): None for name in requirement.watched
     }
     if declarations is not None:
         known = bound(declarations, requirement.watched)
-        found |= {(kind, name): known[kind][name] for kind in known for name in known[kind]}
-    return found
+        meanings |= {(kind, name): known[kind][name] for kind in known for name in known[kind]}
+    return meanings
 
 
 def _named(requirement: FormalizedRequirement, id: str, taken: set[str]) -> FormalizedRequirement:
@@ -159,10 +159,10 @@ def _named(requirement: FormalizedRequirement, id: str, taken: set[str]) -> Form
 
 @with_recursion_limit
 def _pair(new: FormalizedRequirement, old: FormalizedRequirement, seconds: float) -> Pair:
-    found = difference(new, old, seconds)
-    if isinstance(found, Absence):
-        if found.why:
-            note = f"changed; whether a run distinguishes the versions is not known: {found.why}"
+    run = difference(new, old, seconds)
+    if isinstance(run, Absence):
+        if run.why:
+            note = f"changed; whether a run distinguishes the versions is not known: {run.why}"
         else:
             note = (
                 "reworded; proved: both versions have the same verdict on every finite run without"
@@ -171,10 +171,10 @@ def _pair(new: FormalizedRequirement, old: FormalizedRequirement, seconds: float
             if _has_numbers(new) or _has_numbers(old):
                 note += "; the proof assumes exact numbers, without the rounding of floats"
         return Pair(new, old, f"{new.id}: {note}", None)
-    word = found.word
+    word = run.word
     count = f"{word.ticks} tick{'' if word.ticks == 1 else 's'}"
     about = f"{new.id}: a shortest trace that distinguishes the two versions has {count}"
-    about += f"; its values may not be consistent: {found.doubt}" if found.doubt else ""
+    about += f"; its values may not be consistent: {run.uncertainty}" if run.uncertainty else ""
     rows = tuple((row.count, dict(row.values)) for row in word.rows)
     start = Start("Versions", f"{new.id}, before and now", about, (new.id,), rows)
     if word.ticks > MOST:

@@ -60,7 +60,7 @@ def report(inputs: Inputs) -> tuple[ReportView, Details, tuple[Diagnostic, ...]]
     runs_by_key = runs(summaries)
     all_runs = tuple(runs_by_key.values())
     assessed = assessments(project, summaries, lock, inputs.waivers, inputs.proofs, together)
-    chains = [assessment.standing.chain for assessment in assessed]
+    chains = [assessment.review_status.chain for assessment in assessed]
     withdrawn = withdrawn_requirements(project.requirements, chains, lock)
     anchors = {assessment.id: assessment.anchor for assessment in reversed(assessed)}
     shared = shared_products(project.declarations) if inputs.proofs else ()
@@ -179,8 +179,8 @@ def _checks(
     evidence: EvidenceSource | None,
 ) -> Sequence[Diagnostic]:
     """The warnings of `fretc check`, without those about reviews."""
-    found = warnings(project, [assessment.standing for assessment in assessed], lock, evidence)
-    return [warning for warning in found if warning.accepted or warning.code not in _OF_REVIEWS]
+    every = warnings(project, [assessment.review_status for assessment in assessed], lock, evidence)
+    return [warning for warning in every if warning.accepted or warning.code not in _OF_REVIEWS]
 
 
 _OF_REVIEWS = (Code.CHANGED_SINCE_REVIEW, Code.NOT_REVIEWED)

@@ -128,27 +128,27 @@ def matches(
     return (*runs, *(Match(path, (differs(path, "", why),)) for path in unmatched))
 
 
-def _parts(run: str, place: str | None) -> Mapping[str, str | None]:
+def _parts(run: str, location: str | None) -> Mapping[str, str | None]:
     """Path of each file of a run in a manifest → its present path."""
     try:
-        about = _folder(place) if place is not None and not is_url(place) else None
+        about = _folder(location) if location is not None and not is_url(location) else None
     except OSError:
         about = None
-    if place is not None and isinstance(about, Folder):
-        described = is_folder(place)
+    if location is not None and isinstance(about, Folder):
+        described = is_folder(location)
         names = _normal(run) if described else os.path.dirname(_normal(run))
         files = (*about.files, *([METADATA] if described else []))
         return {
             _normal(os.path.join(names, name_of(n))): os.path.join(about.path, n) for n in files
         }
-    return {_normal(run): place}
+    return {_normal(run): location}
 
 
-def _folder(place: str) -> Folder | Diagnostic | None:
+def _folder(location: str) -> Folder | Diagnostic | None:
     """The folder of a run with several files, or None."""
-    if is_folder(place):
-        return folder(place)
-    return None if os.path.lexists(place) else split(place)
+    if is_folder(location):
+        return folder(location)
+    return None if os.path.lexists(location) else split(location)
 
 
 def _differences(
@@ -156,7 +156,7 @@ def _differences(
     claim: str | None,
     listed: Mapping[str, str],
     parts: Mapping[str, str | None],
-    place: str | None,
+    location: str | None,
 ) -> Iterator[Recheck]:
     """The differences between one run and the manifest."""
     if not listed:
@@ -167,7 +167,7 @@ def _differences(
             if os.path.basename(path) != METADATA:
                 yield differs(run, "", f"the manifest does not name `{path}`")
             continue
-        sha = claim if now == place and claim is not None else file_sha256(now) if now else None
+        sha = claim if now == location and claim is not None else file_sha256(now) if now else None
         if sha is None:
             yield unknown(
                 run, "", "its hash cannot be computed, so it cannot be compared with the manifest"

@@ -17,13 +17,13 @@ from pathlib import Path
 from compiler.files.build_id import __version__
 from compiler.files.records import plain, replace
 from compiler.files.text_files import file_sha256
-from fretc.audit.evidence.basis import BINDINGS, KINDS, SENTENCE, of_all, outdated, why
 from fretc.audit.evidence.claim import AuditedRequirement
 from fretc.audit.evidence.estimates import estimates
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.result_summaries import summary_of
 from fretc.audit.evidence.schema import EvidenceDocument, RequirementRecord, Result
 from fretc.audit.evidence.schema import LogFinding as OfLog
+from fretc.audit.evidence.verdict_inputs import BINDINGS, KINDS, SENTENCE, of_all, outdated, why
 from fretc.audit.many_logs import Engine, audit_logs, named_situations
 from fretc.audit.plan import Plan, monitored_requirements
 from fretc.logs.labels import path_label
@@ -52,9 +52,9 @@ def located(runs: Sequence[str], folder: str | None) -> dict[str, str]:
     places: dict[str, str] = {}
     for run in runs:
         log = path_of(run)
-        place = log if folder is None else _below(Path(folder), log)
-        if place is not None and ("://" in place or Path(place).exists()):
-            places[run] = place
+        path = log if folder is None else _below(Path(folder), log)
+        if path is not None and ("://" in path or Path(path).exists()):
+            places[run] = path
     return places
 
 
@@ -161,13 +161,13 @@ def _integrity(result: Result) -> Integrity:
     return Integrity.FULL if checked is not None and not checked.by_index else Integrity.HASH
 
 
-def _prints(plan: Plan, place: str) -> frozenset[str]:
+def _prints(plan: Plan, location: str) -> frozenset[str]:
     """The SHA-256 values of a log: of the whole file, and of its summary."""
     signals = tuple(plan.declarations.signals)
     levels = (Integrity.INDEX, Integrity.HASH)
-    recordings = [read(place, plan.declarations, signals, level) for level in levels]
+    recordings = [read(location, plan.declarations, signals, level) for level in levels]
     hashes = [recording.sha256 for recording in recordings if not isinstance(recording, Diagnostic)]
-    return frozenset(filter(None, (*hashes, file_sha256(place))))
+    return frozenset(filter(None, (*hashes, file_sha256(location))))
 
 
 # The file as a whole ----------------------------------------------------------------------------
@@ -180,7 +180,7 @@ def _beginning(document: EvidenceDocument, plan: Plan, *, part: bool) -> Iterato
     """Compare the head of the file; also check that there are results."""
     claims = {claim.id: claim for claim in plan.claims}
     named = [requirement.id for requirement in document.requirements]
-    bound = of_all({id: claims[id].basis[BINDINGS] for id in named if id in claims})
+    bound = of_all({id: claims[id].verdict_inputs[BINDINGS] for id in named if id in claims})
     if not document.results:
         yield unknown(FILE, "", "it contains no run")
     if document.fretc != __version__:
@@ -199,7 +199,7 @@ def _beginning(document: EvidenceDocument, plan: Plan, *, part: bool) -> Iterato
 
 def _same_sentence(before: RequirementRecord, now: AuditedRequirement) -> bool:
     """Whether wording and hash of the sentence are equivalent to the present ones."""
-    return before.sha256 == now.basis[SENTENCE] and _wording(before.sentence) == _wording(
+    return before.sha256 == now.verdict_inputs[SENTENCE] and _wording(before.sentence) == _wording(
         now.sentence
     )
 

@@ -122,10 +122,10 @@ def print_project_diagnostics(diagnostics: Sequence[Diagnostic], requirements: s
     counts = Counter(warning.code.number for warning in warnings)
     codes = ", ".join(f"{count} {code}" for code, count in sorted(counts.items()))
     noun = "warning about a sentence" if len(warnings) == 1 else "warnings about sentences"
-    place = "" if requirements == REQUIREMENTS_FOLDER else f" --requirements {quote(requirements)}"
+    option = "" if requirements == REQUIREMENTS_FOLDER else f" --requirements {quote(requirements)}"
     if others:
         print_status("")
-    print_status(visible(f"{len(warnings)} {noun} ({codes}): see `fretc check{place}`"))
+    print_status(visible(f"{len(warnings)} {noun} ({codes}): see `fretc check{option}`"))
 
 
 def _is_about_a_sentence(diagnostic: Diagnostic) -> bool:

@@ -53,10 +53,10 @@ def _job(
 def suite(
     requirements: Sequence[FormalizedRequirement],
     assumptions: Sequence[FormalizedRequirement],
-    found: Iterable[Batch],
+    batches: Iterable[Batch],
 ) -> Suite:
     """All tests as one suite with unique names."""
-    made = tuple(_renamed(found))
+    made = tuple(_renamed(batches))
     names = dict.fromkeys(
         name for requirement in (*requirements, *assumptions) for name in requirement.variables
     )
@@ -83,10 +83,10 @@ def suite(
     )
 
 
-def _renamed(found: Iterable[Batch]) -> Iterator[Batch]:
+def _renamed(batches: Iterable[Batch]) -> Iterator[Batch]:
     """The batch with a number appended to each name that is already used."""
     seen: set[str] = set()
-    for each in found:
+    for each in batches:
         names: dict[str, str] = {}
         for test in each.tests:
             names[test.name] = unused(test.name, seen)

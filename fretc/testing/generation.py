@@ -77,9 +77,9 @@ def lost(requirement: FormalizedRequirement, why: str) -> Batch:
     )
 
 
-def _tested(requirement: FormalizedRequirement, kept: Ids, doubt: str) -> Tested:
+def _tested(requirement: FormalizedRequirement, kept: Ids, uncertainty: str) -> Tested:
     return Tested(
-        requirement.id, printed(requirement.written), requirement.fingerprint, kept, doubt
+        requirement.id, printed(requirement.written), requirement.fingerprint, kept, uncertainty
     )
 
 
@@ -158,7 +158,7 @@ class _Generation:
         names: set[str] = set()
         made = {run: self._test(run, purpose, names) for run, purpose in runs.items()}
         return Batch(
-            _tested(self._rule, self._runs.bench.others, self._runs.bench.doubt),
+            _tested(self._rule, self._runs.bench.others, self._runs.bench.uncertainty),
             tuple(made.values()),
             tuple(self._obligations(met, made)),
             tuple(self._mutants(told, made)),
@@ -168,10 +168,10 @@ class _Generation:
 
     def _meeting_all(self, met: Mapping[Need, Answer]) -> dict[TestRun, _Purpose]:
         """Runs as short as the found ones, one for several goals; each with its goals."""
-        found = {need: run for need, run in met.items() if isinstance(run, TestRun)}
+        runs = {need: run for need, run in met.items() if isinstance(run, TestRun)}
         shown = {
-            run: [need for need, shortest in found.items() if _serves(run, need, shortest)]
-            for run in found.values()
+            run: [need for need, shortest in runs.items() if _serves(run, need, shortest)]
+            for run in runs.values()
         }
         chosen = cover(shown, {run: run.rank for run in shown})
         common = Counter(need for needs in shown.values() for need in needs)
@@ -249,29 +249,29 @@ class _Generation:
     ) -> Iterator[GoalResult]:
         for situation in self._situations:
             for polarity in _polarities(situation):
-                found = met[situation.key, polarity]
-                if isinstance(found, TestRun):
+                answer = met[situation.key, polarity]
+                if isinstance(answer, TestRun):
                     runs = [run for run in made if run.polarity is polarity]
                     tests = _names(made, [run for run in runs if situation.key in run.situations])
                     yield _obligation(self._rule, situation, polarity, GoalStatus.MET, tests=tests)
                 else:
-                    outcome = found.outcome(
+                    outcome = answer.outcome(
                         GoalStatus.IMPOSSIBLE, GoalStatus.EXCLUDED, GoalStatus.NOT_SEARCHED
                     )
                     yield _obligation(
-                        self._rule, situation, polarity, outcome, by=found.by, why=found.why
+                        self._rule, situation, polarity, outcome, by=answer.by, why=answer.why
                     )
 
     def _mutants(
         self, told: Mapping[str, Answer], made: Mapping[TestRun, Test]
     ) -> Iterator[MutantResult]:
         for mutant in self._wrong:
-            found = told.get(mutant.key)
-            if isinstance(found, Absence):
-                outcome = found.outcome(
+            answer = told.get(mutant.key)
+            if isinstance(answer, Absence):
+                outcome = answer.outcome(
                     MutantStatus.EQUIVALENT, MutantStatus.EXCLUDED, MutantStatus.NOT_SEARCHED
                 )
-                yield _mutated(self._rule, mutant, outcome, by=found.by, why=found.why)
+                yield _mutated(self._rule, mutant, outcome, by=answer.by, why=answer.why)
             else:
                 tests = _names(made, [run for run in made if mutant.key in run.kills])
                 assert tests
@@ -279,14 +279,14 @@ class _Generation:
 
     def _telling(self, chosen: Iterable[TestRun]) -> dict[str, Answer]:
         """A shortest run for each mutant that no selected run kills, one for several mutants."""
-        found: dict[str, Answer] = {}
+        answers: dict[str, Answer] = {}
         runs = list(chosen)
         for mutant in self._wrong:
             if not any(mutant.key in run.kills for run in runs):
-                answer = found[mutant.key] = self._runs.telling(mutant)
+                answer = answers[mutant.key] = self._runs.telling(mutant)
                 if isinstance(answer, TestRun):
                     runs.append(answer)
-        return found
+        return answers
 
 
 def _serves(run: TestRun, need: Need, shortest: TestRun) -> bool:

@@ -89,8 +89,8 @@ class Places:
         )
         requirement = self._rule.entry
         source = Source(requirement.wording.source.name, printed(written))
-        found, _ = formalize(replace(requirement, wording=source.span()), self._rule.declarations)
-        return found
+        made, _ = formalize(replace(requirement, wording=source.span()), self._rule.declarations)
+        return made
 
 
 _CALLS = {"abs": "absReal", "min": "minReal", "max": "maxReal"}

@@ -16,5 +16,5 @@ DEFAULT = "build/tests/suite.json"
 def read(path: str) -> Suite | Diagnostic:
     """Read and check a file of `fretc test`."""
     again = f"generate it again: `fretc test -o {path}`"
-    found = records.read(path, Suite, "fretc test", again)
-    return found if isinstance(found, Diagnostic) else found[1]
+    file = records.read(path, Suite, "fretc test", again)
+    return file if isinstance(file, Diagnostic) else file[1]

@@ -44,7 +44,7 @@ class StepResult:
     """The requirement is violated at this tick or before."""
     accepts: Function
     """FRET's verdict if the run ended here."""
-    owes: Function
+    obligation_pending: Function
     """An obligation is open, without a violation."""
 
 
@@ -158,9 +158,9 @@ class RequirementModel:
                 endings, way = words.endings(endings.end & goal), bdd.true()
             else:
                 way = goal
-            found = words.shortest(way, endings)
-            if found is not None:
-                return found
+            letters = words.shortest(way, endings)
+            if letters is not None:
+                return letters
         return None
 
     def _endings(self, kept: Ids, polarity: Polarity) -> tuple[Endings, ...]:
@@ -169,11 +169,11 @@ class RequirementModel:
         ends: tuple[Function, ...]
         match polarity:
             case Polarity.KEPT:
-                ends = (own.accepts - own.owes, own.accepts)
+                ends = (own.accepts - own.obligation_pending, own.accepts)
             case Polarity.BROKEN:
                 ends = (own.breaks, own.broken, -own.accepts)
             case Polarity.UNKNOWN:
-                raise AssertionError("`doubt_of` looks for those")
+                raise AssertionError("`dependence` looks for those")
             case _:
                 assert_never(polarity)
         return tuple(words.endings(end & lasts) for end in ends)
@@ -196,7 +196,7 @@ class RequirementModel:
             bdd.true(), words.endings((self._own.accepts ^ judged.accepts) & lasts)
         )
 
-    def doubt_of(
+    def dependence(
         self, goal: Function, atom: str, kept: Ids
     ) -> tuple[tuple[Letter, ...], int] | None:
         """A shortest run whose verdict depends on an atom at one tick of the goal, and that tick.
@@ -225,10 +225,10 @@ class RequirementModel:
         once = -here | (goal - was)
         words, lasts = self._built(kept, False, more, letters=(number,), safe=once)
         ends = (self._own.accepts ^ judged.accepts) & (was | here) & lasts
-        found = words.shortest(bdd.true(), words.endings(ends))
-        if found is None:
+        letters = words.shortest(bdd.true(), words.endings(ends))
+        if letters is None:
             return None
-        return found, next(tick for tick, letter in enumerate(found) if letter[number])
+        return letters, next(tick for tick, letter in enumerate(letters) if letter[number])
 
     def _beside(
         self, requirement: FormalizedRequirement, alphabet: Alphabet, memory: Memory
@@ -283,9 +283,9 @@ class RequirementModel:
         return runs, runs.lasting()
 
     @property
-    def doubt(self) -> str:
+    def uncertainty(self) -> str:
         """Why some valuations may be impossible; empty: all are possible."""
-        return self.alphabet.doubts.get(Role.OUTPUT, "")
+        return self.alphabet.uncertainties.get(Role.OUTPUT, "")
 
 
 def demands(requirement: FormalizedRequirement) -> Obligation:

@@ -122,8 +122,8 @@ class FoundRuns:
             assert situation.unknown is not None
             atom = situation.unknown
             return self._answer(
-                partial(self.bench.doubt_of, goal, atom),
-                lambda found: self._doubtful(situation, atom, *found),
+                partial(self.bench.dependence, goal, atom),
+                lambda found: self._unknown_run(situation, atom, *found),
             )
         found = self._answer(
             lambda kept: self.bench.shortest(goal, polarity, kept, at_end=situation.at_end),
@@ -202,7 +202,7 @@ class FoundRuns:
         column = evaluate(formula, made.columns, made.ticks)
         return column & 1 << made.ticks - 1 if situation.at_end else column
 
-    def _doubtful(
+    def _unknown_run(
         self, situation: Situation, atom: str, letters: Sequence[Letter], tick: int
     ) -> TestRun:
         """The run with an atom unknown at a tick, and all atoms that read the same names."""
@@ -224,7 +224,7 @@ class DistinguishingRun:
     """A shortest run with different verdicts of two sentences."""
 
     word: RunColumns
-    doubt: str
+    uncertainty: str
     """Why its values may be impossible; empty: they are possible."""
 
 
@@ -250,7 +250,7 @@ def difference(
     signals = {name: read for name, read in _read(both).items() if name not in read}
     made = word(letters, bench.alphabet, Naming(atoms, atoms, signals, {}))
     assert is_killed(judged(requirement, made), judged(other, made), made.ticks)
-    return DistinguishingRun(made, bench.doubt)
+    return DistinguishingRun(made, bench.uncertainty)
 
 
 def _read(requirements: Iterable[FormalizedRequirement]) -> dict[str, frozenset[str]]:

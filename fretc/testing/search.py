@@ -111,13 +111,13 @@ class RunSearch:
 
         Same as `Transition.moved`, but node by node, because layers are small and share most nodes.
         """
-        found = self._moves.get(states)
-        if found is None:
+        function = self._moves.get(states)
+        if function is None:
             bit, high, low = bdd.branches(states)
             after = self.transition.step(bit)
-            found = bdd.ite(after, self.moved(high), self.moved(low))
-            self._moves[states] = found
-        return found
+            function = bdd.ite(after, self.moved(high), self.moved(low))
+            self._moves[states] = function
+        return function
 
     def endings(self, end: Function) -> Endings:
         """The ways to an end, for any number of goals."""

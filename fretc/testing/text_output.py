@@ -112,7 +112,7 @@ def _remarks(suite: Suite) -> Iterator[Line]:
     for mutant in suite.mutants:
         if mutant.requirement not in lost:
             yield from _surviving(mutant)
-    yield from _doubts(suite)
+    yield from _uncertainties(suite)
 
 
 def _lost(suite: Suite) -> Iterator[tuple[str, str]]:
@@ -128,20 +128,20 @@ def _lost(suite: Suite) -> Iterator[tuple[str, str]]:
             yield requirement.id, reasons.pop()
 
 
-def _doubts(suite: Suite) -> Iterator[Line]:
+def _uncertainties(suite: Suite) -> Iterator[Line]:
     """Tests with possibly impossible values, with one of the reasons."""
-    doubted = [requirement for requirement in suite.requirements if requirement.doubt]
-    if doubted:
-        ids = listed([each.id for each in doubted])
-        text = f"some tests of {ids} may have impossible values: {doubted[0].doubt}"
+    uncertain = [requirement for requirement in suite.requirements if requirement.doubt]
+    if uncertain:
+        ids = listed([each.id for each in uncertain])
+        text = f"some tests of {ids} may have impossible values: {uncertain[0].doubt}"
         yield f"{signs.SUSPECT.glyph} {text}", signs.SUSPECT.colour
 
 
 def _by_situation(suite: Suite) -> list[list[GoalResult]]:
-    found: dict[tuple[str, str], list[GoalResult]] = {}
+    groups: dict[tuple[str, str], list[GoalResult]] = {}
     for obligation in suite.obligations:
-        found.setdefault((obligation.requirement, obligation.situation), []).append(obligation)
-    return [*found.values()]
+        groups.setdefault((obligation.requirement, obligation.situation), []).append(obligation)
+    return [*groups.values()]
 
 
 def _unmet(obligations: Sequence[GoalResult]) -> Iterator[Line]:

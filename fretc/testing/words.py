@@ -230,16 +230,16 @@ def outcome(
         step([row])
         if decided is None and monitor.verdicts()[0] != PENDING:
             decided = tick
-    (standing,) = monitor.standings()
-    verdict = Verdict(str(standing.verdict))
-    return Expected(standing.finite, verdict, decided, standing.first_violation, because)
+    (status,) = monitor.statuses()
+    verdict = Verdict(str(status.verdict))
+    return Expected(status.finite, verdict, decided, status.first_violation, because)
 
 
 def _row(monitor: Monitor, word: RunColumns, tick: int) -> tuple[Truth, ...]:
     columns = (
-        Column(word.columns[name] & ~doubt, doubt)
+        Column(word.columns[name] & ~unknown, unknown)
         for name in monitor.PROPOSITIONS
-        for doubt in [word.unknown.get(name, 0)]
+        for unknown in [word.unknown.get(name, 0)]
     )
     return tuple(column.at(tick) for column in columns)
 

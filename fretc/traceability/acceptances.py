@@ -11,7 +11,7 @@ from compiler.project.refusals import unreviewable
 from fretc.audit.evidence.result_summaries import EvidenceSource
 from fretc.audit.evidence.schema import LogFinding
 from fretc.traceability.checks import checks, unreviewed
-from fretc.traceability.lock import Lock, ReviewedRequirement
+from fretc.traceability.lock import Lock, ReviewStatus
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, has_errors
 from fretish.diagnostics.source import Source
 
@@ -20,7 +20,7 @@ _CODES = {code.number: code for code in Code}
 
 def warnings(
     project: Project,
-    standings: Sequence[ReviewedRequirement],
+    statuses: Sequence[ReviewStatus],
     lock: Lock | None,
     evidence: EvidenceSource | None,
 ) -> tuple[Diagnostic, ...]:
@@ -31,24 +31,24 @@ def warnings(
 
     Args:
         project: with or without errors; requirements that an error affects are skipped.
-        standings: each requirement with its review, in the order of the project.
+        statuses: each requirement with its review, in the order of the project.
         lock: None if no requirement was reviewed.
         evidence: None if no run was audited.
     """
     refused = unreviewable(project)
-    pairs = zip(project.requirements, standings, strict=True)
+    pairs = zip(project.requirements, statuses, strict=True)
     sound = [each for requirement, each in pairs if requirement not in refused]
     new = unreviewed(project, sound) if lock is not None and lock.reviews else ()
-    found = project.answered((*checks(project, sound), *new))
+    diagnostics = project.answered((*checks(project, sound), *new))
     if not project.acceptances:  # No finding about the logs is accepted, so they need not be read.
-        return found
+        return diagnostics
     if has_errors(project.diagnostics):  # An error may hide the warning that an acceptance is for.
-        return found
+        return diagnostics
     logged = project.answered(_of_logs(evidence)) if evidence is not None else ()
-    every = (*project.diagnostics, *found, *logged)
+    every = (*project.diagnostics, *diagnostics, *logged)
     recorded = _recorded(evidence) if evidence is not None else None
     return (
-        *found,
+        *diagnostics,
         *(diagnostic for diagnostic in logged if diagnostic.accepted),
         *unused_acceptances(project.acceptances, every, project.declarations, recorded),
     )

@@ -50,16 +50,16 @@ def answers(analyzed: AnalyzedSet | None, project: Project) -> Mapping[str, Real
     old = _differences(document.requirements, members(requirements))
     promises = _differences(document.assumptions, members(assumed))
     now = _components(requirements, assumed, document.requirements)
-    found: dict[str, Realizability] = {}
+    answers_of: dict[str, Realizability] = {}
     for requirement in requirements:
         if requirement.id in document.requirements:
             then = _component(document.analysis, requirement.id)
             mates = {requirement.id, *then, *now[requirement.id]}
             differing = (*(id for id in old if id in mates), *promises)
-            found[requirement.id] = _answer(
+            answers_of[requirement.id] = _answer(
                 document.analysis, requirement.id, differing, document.as_fret
             )
-    return found
+    return answers_of
 
 
 def _answer(
@@ -104,8 +104,10 @@ def _components(
                 [requirement.id for requirement in group]
                 for group in by_outputs(candidates, assumed, chosen)
             ]
-            found = {id: tuple(ids) for ids in groups for id in ids}
-            return {requirement.id: found.get(requirement.id, ()) for requirement in requirements}
+            group_of = {id: tuple(ids) for ids in groups for id in ids}
+            return {
+                requirement.id: group_of.get(requirement.id, ()) for requirement in requirements
+            }
     return dict.fromkeys(
         (requirement.id for requirement in requirements),
         tuple(requirement.id for requirement in requirements),

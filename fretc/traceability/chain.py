@@ -21,10 +21,10 @@ from compiler.project.acceptances import TOPIC, Acceptance
 from compiler.project.hazards import Hazard
 from compiler.project.project import Project
 from fretc.analysis.evidence import AnalyzedSet
-from fretc.audit.bases import audited_topics, bases
-from fretc.audit.evidence import basis
-from fretc.audit.evidence.basis import Basis
+from fretc.audit.evidence import verdict_inputs
 from fretc.audit.evidence.result_summaries import Recorded, ResultSummaries, ResultSummary
+from fretc.audit.evidence.verdict_inputs import VerdictInputs
+from fretc.audit.project_inputs import all_verdict_inputs, audited_topics
 from fretc.traceability import texts
 from fretc.traceability.analyses import Realizability, answers
 from fretc.traceability.artefacts import Product, monitors, shared_products
@@ -42,7 +42,7 @@ PROOF, SHARED = "proof", "shared"
 ANALYSIS, MEMBER = "analysis", "member"
 DERIVED = (FORMULAS, ARTEFACT, VERDICT, PROOF, ANALYSIS)
 """Kinds of nodes that are derived from nodes upstream."""
-ADDED = (LOG, VERDICT, PROOF, ANALYSIS, SHARED, PLAN, ARTEFACT, basis.TOPICS)
+ADDED = (LOG, VERDICT, PROOF, ANALYSIS, SHARED, PLAN, ARTEFACT, verdict_inputs.TOPICS)
 """Kinds of nodes that may be added after a review without invalidating it."""
 _READINGS = ("ltl", "json")
 """Targets that only print formulas; formulas have nodes of their own."""
@@ -142,7 +142,7 @@ def chains(
     summaries: ResultSummaries | None,
     artefacts: Mapping[RequirementEntry, Sequence[Product]] | None = None,
     proofs: Sequence[Proof] = (),
-    known: Mapping[RequirementEntry, Basis] | None = None,
+    known: Mapping[RequirementEntry, VerdictInputs] | None = None,
     analyzed: AnalyzedSet | None = None,
 ) -> tuple[Chain, ...]:
     """The chain of each requirement, in the order of the project.
@@ -152,7 +152,7 @@ def chains(
         summaries: results of the evidence; None if no run was audited.
         artefacts: requirement → its products; None: computed by `products`.
         proofs: the results of verification.
-        known: the present inputs of a verdict on each requirement; None: computed by `bases`.
+        known: the present inputs of a verdict on each requirement; None: they are computed.
         analyzed: the file of `fretc analyze`; None if there is none.
     """
     requirements = {requirement.entry: requirement for requirement in project.formalized}
@@ -178,7 +178,7 @@ class _Common:
 
     project: Project
     texts: Mapping[str, RequirementEntry]
-    bases: Mapping[RequirementEntry, Basis]
+    verdict_inputs: Mapping[RequirementEntry, VerdictInputs]
     audited_by: str
     """The version of fretc that wrote the evidence."""
     acceptances: Mapping[RequirementEntry | None, Sequence[Acceptance]]
@@ -198,7 +198,7 @@ def _common(
     summaries: ResultSummaries | None,
     artefacts: Mapping[RequirementEntry, Sequence[Product]],
     proofs: Sequence[Proof],
-    known: Mapping[RequirementEntry, Basis] | None,
+    known: Mapping[RequirementEntry, VerdictInputs] | None,
     analyzed: AnalyzedSet | None,
 ) -> _Common:
     shared = shared_products(project.declarations) if proofs else ()
@@ -206,7 +206,7 @@ def _common(
     return _Common(
         project,
         {requirement.id: requirement for requirement in project.requirements},
-        bases(project, topics, monitors(artefacts)) if known is None else known,
+        all_verdict_inputs(project, topics, monitors(artefacts)) if known is None else known,
         summaries.source.fretc if summaries else "",
         _by_requirement(project.acceptances),
         {product.file: product.sha256 for product in shared},
@@ -230,7 +230,7 @@ class _ChainBuilder:
 
     def __init__(self, common: _Common, requirement: RequirementEntry) -> None:
         self._common, self._project, self._id = common, common.project, requirement.id
-        self._basis = common.bases[requirement]
+        self._verdict_inputs = common.verdict_inputs[requirement]
         self._prints: dict[ChainItem, str] = {}
         self._links: dict[Link, None] = {}
         self._outdated_proofs: dict[ChainItem, tuple[ChainItem, ...]] = {}
@@ -250,8 +250,8 @@ class _ChainBuilder:
         self._add_parents(entry, {entry.id})
         self._add_status_and_plans(entry)
         self._accepted(entry, requirement)
-        sentence = ChainItem(basis.SENTENCE, entry.id)
-        self._add(sentence, self._basis[basis.SENTENCE])
+        sentence = ChainItem(verdict_inputs.SENTENCE, entry.id)
+        self._add(sentence, self._verdict_inputs[verdict_inputs.SENTENCE])
         self._link(ChainItem(TEXT, entry.id), sentence)
         nodes = (
             self._add_artefacts(requirement, sentence, artefacts) if requirement is not None else {}
@@ -355,7 +355,7 @@ class _ChainBuilder:
     ) -> Mapping[str, ChainItem]:
         """Add formulas, meanings and artefacts; return target → artefact."""
         formulas, words = ChainItem(FORMULAS, requirement.id), ChainItem(WORDS, requirement.id)
-        clock, fretc = self._add_clock(), ChainItem(basis.FRETC, _VERSION)
+        clock, fretc = self._add_clock(), ChainItem(verdict_inputs.FRETC, _VERSION)
         self._add(formulas, _formulas(requirement))
         self._add(fretc, digest(__version__))
         self._link(sentence, formulas)
@@ -375,32 +375,36 @@ class _ChainBuilder:
         return nodes
 
     def _add_clock(self) -> ChainItem:
-        node = ChainItem(basis.CLOCK, "clock")
-        self._add(node, self._basis[basis.CLOCK])
+        node = ChainItem(verdict_inputs.CLOCK, "clock")
+        self._add(node, self._verdict_inputs[verdict_inputs.CLOCK])
         return node
 
     def _add_sources(self, monitor: ChainItem | None, *, audited: bool) -> Mapping[str, ChainItem]:
         """Add the inputs of a verdict; return kind → node."""
         nodes = {
-            basis.FRETC: ChainItem(basis.FRETC, _VERSION),
-            basis.SENTENCE: ChainItem(basis.SENTENCE, self._id),
-            basis.PARAMS: ChainItem(basis.PARAMS, self._id),
-            basis.CLOCK: self._add_clock(),
-            basis.TOPICS: ChainItem(basis.TOPICS, "audited"),
-            basis.BINDINGS: ChainItem(basis.BINDINGS, self._id),
-            basis.MONITOR: monitor or ChainItem(basis.MONITOR, self._id),
+            verdict_inputs.FRETC: ChainItem(verdict_inputs.FRETC, _VERSION),
+            verdict_inputs.SENTENCE: ChainItem(verdict_inputs.SENTENCE, self._id),
+            verdict_inputs.PARAMS: ChainItem(verdict_inputs.PARAMS, self._id),
+            verdict_inputs.CLOCK: self._add_clock(),
+            verdict_inputs.TOPICS: ChainItem(verdict_inputs.TOPICS, "audited"),
+            verdict_inputs.BINDINGS: ChainItem(verdict_inputs.BINDINGS, self._id),
+            verdict_inputs.MONITOR: monitor or ChainItem(verdict_inputs.MONITOR, self._id),
         }
-        for kind in (basis.PARAMS, basis.BINDINGS, *([basis.TOPICS] if audited else ())):
-            self._add(nodes[kind], self._basis[kind])
+        for kind in (
+            verdict_inputs.PARAMS,
+            verdict_inputs.BINDINGS,
+            *([verdict_inputs.TOPICS] if audited else ()),
+        ):
+            self._add(nodes[kind], self._verdict_inputs[kind])
         return nodes
 
     def _sources_of_verdicts(self, sources: Mapping[str, ChainItem]) -> tuple[ChainItem, ...]:
         """The direct inputs of each verdict; the monitor takes the place of the sentence."""
-        has_monitor = sources[basis.MONITOR] in self._prints
+        has_monitor = sources[verdict_inputs.MONITOR] in self._prints
         return tuple(
             source
             for kind, source in sources.items()
-            if source in self._prints and not (has_monitor and kind == basis.SENTENCE)
+            if source in self._prints and not (has_monitor and kind == verdict_inputs.SENTENCE)
         )
 
     def _differences(
@@ -408,7 +412,7 @@ class _ChainBuilder:
     ) -> Mapping[Recorded, tuple[ChainItem, ...]]:
         """Outdated inputs of results → the nodes that differ."""
         kinds_of = {
-            recorded: outdated(recorded, self._common.audited_by, self._basis)
+            recorded: outdated(recorded, self._common.audited_by, self._verdict_inputs)
             for recorded in {result.rests_on for result in results}
         }
         return {
@@ -467,10 +471,13 @@ def status_node(requirement: str) -> ChainItem:
     return ChainItem(STATUS, requirement)
 
 
-def outdated(recorded: Recorded, audited_by: str, now: Basis) -> tuple[str, ...]:
+def outdated(recorded: Recorded, audited_by: str, now: VerdictInputs) -> tuple[str, ...]:
     """The kinds of inputs of a result that have changed since its audit."""
-    then = {**dict(zip(basis.KINDS, recorded, strict=True)), basis.FRETC: audited_by}
-    return basis.outdated(then, {**now, basis.FRETC: __version__})
+    then = {
+        **dict(zip(verdict_inputs.KINDS, recorded, strict=True)),
+        verdict_inputs.FRETC: audited_by,
+    }
+    return verdict_inputs.outdated(then, {**now, verdict_inputs.FRETC: __version__})
 
 
 def _print_of_log(result: ResultSummary) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any
 
 from compiler.files.records import replace
-from fretc.audit.evidence import basis
+from fretc.audit.evidence import verdict_inputs
 from fretc.traceability import word_diff
 from fretc.traceability.chain import (
     ACCEPTANCE,
@@ -65,9 +65,9 @@ class ReviewChange:
         if self.is_of_evidence:
             if self.node.kind == MEMBER:
                 return f"the analysis used another version of {self.node.name}"
-            known = self.node.kind in (*basis.KINDS, basis.FRETC)
+            known = self.node.kind in (*verdict_inputs.KINDS, verdict_inputs.FRETC)
             about = f"the evidence is about another version of: {self.what}"
-            return basis.why(self.node.kind) if known else about
+            return verdict_inputs.why(self.node.kind) if known else about
         if self.before is None:
             now = f" is {self.after} now" if self.after else " changed"
             return f"{self.what}{now}; the lock does not record the earlier value"
@@ -118,7 +118,7 @@ class ReviewChange:
 
 _BRIEF = 120
 """Maximum number of characters of a change within a sentence."""
-_WITH_DEFAULTS = (basis.BINDINGS, basis.CLOCK, WORDS, FORMULAS, ARTEFACT)
+_WITH_DEFAULTS = (verdict_inputs.BINDINGS, verdict_inputs.CLOCK, WORDS, FORMULAS, ARTEFACT)
 
 
 def changes(
@@ -138,8 +138,8 @@ def changes(
         causes: the nodes that make links of the requirement suspect; each of them is reported.
     """
     comparison = _Comparison(chain, prints, verdicts, texts)
-    found = [*comparison.of_texts(), *comparison.of_nodes()]
-    return (*found, *comparison.of_causes(causes, found))
+    all_changes = [*comparison.of_texts(), *comparison.of_nodes()]
+    return (*all_changes, *comparison.of_causes(causes, all_changes))
 
 
 def in_words(changes: Sequence[ReviewChange]) -> str:
@@ -216,9 +216,9 @@ class _Comparison:
         """Whether the change of the node follows from a changed node to which it has no link."""
         id = self._chain.requirement
         kinds = {each.kind for each in self._nodes if each.kind != TEXT or each.name == id}
-        if node.kind == basis.FRETC:  # A node has no version if it has no formulas.
+        if node.kind == verdict_inputs.FRETC:  # A node has no version if it has no formulas.
             is_other = node in self._prints and node in self._now
-            return not is_other and basis.SENTENCE in kinds
+            return not is_other and verdict_inputs.SENTENCE in kinds
         sources = _SOURCES if self._texts is None else {**_SOURCES, **_SOURCES_OF_TEXTS}
         return bool(kinds & sources.get(node.kind, frozenset()))
 
@@ -238,22 +238,22 @@ class _Comparison:
         return ReviewChange(node, thing(node), None, None)
 
     def of_causes(
-        self, causes: Collection[ChainItem], found: Collection[ReviewChange]
+        self, causes: Collection[ChainItem], changes: Collection[ReviewChange]
     ) -> Iterator[ReviewChange]:
-        """Causes of suspect links that no change in `found` reports."""
+        """Causes of suspect links that no change in `changes` reports."""
         own = ChainItem(MEMBER, self._chain.requirement)
         for cause in causes:
-            if cause == own and found:
+            if cause == own and changes:
                 continue
             if cause not in self._nodes:
                 yield ReviewChange(cause, thing(cause), None, None, is_of_evidence=True)
-            elif not found:
+            elif not changes:
                 yield self._named(cause)
 
 
 def thing(node: ChainItem) -> str:
     """The name of a node for a reader: `artefact r1_monitor.py`, `the clock`."""
-    if node.kind in (basis.CLOCK, basis.TOPICS):
+    if node.kind in (verdict_inputs.CLOCK, verdict_inputs.TOPICS):
         return f"the {node.kind}"
     return f"{node.kind} {node.name}"
 
@@ -264,19 +264,21 @@ def _digest(sha256: str) -> str:
 
 _MANY = (ARTEFACT, FORMULAS, PLAN, SHARED)
 """Kinds with several nodes per requirement, all of which one text is about."""
-_ONLY_OF_EVIDENCE = (VERDICT, basis.TOPICS)
+_ONLY_OF_EVIDENCE = (VERDICT, verdict_inputs.TOPICS)
 """Kinds of nodes that exist only if there are runs; the node of the log reports a removed run."""
 _SOURCES: Mapping[str, frozenset[str]] = {
-    ARTEFACT: frozenset({TEXT, basis.PARAMS, basis.BINDINGS, WORDS, FORMULAS, PLAN}),
-    FORMULAS: frozenset({basis.BINDINGS}),
+    ARTEFACT: frozenset(
+        {TEXT, verdict_inputs.PARAMS, verdict_inputs.BINDINGS, WORDS, FORMULAS, PLAN}
+    ),
+    FORMULAS: frozenset({verdict_inputs.BINDINGS}),
     SHARED: frozenset({PROOF}),
 }
 """Kind of a node → other kinds that it may be derived from without a link."""
 _SOURCES_OF_TEXTS: Mapping[str, frozenset[str]] = {
-    basis.BINDINGS: frozenset({basis.SENTENCE}),
-    WORDS: frozenset({basis.SENTENCE, basis.BINDINGS}),
-    basis.TOPICS: frozenset({basis.SENTENCE, basis.BINDINGS}),
-    PROOF: frozenset({basis.SENTENCE, basis.BINDINGS}),
+    verdict_inputs.BINDINGS: frozenset({verdict_inputs.SENTENCE}),
+    WORDS: frozenset({verdict_inputs.SENTENCE, verdict_inputs.BINDINGS}),
+    verdict_inputs.TOPICS: frozenset({verdict_inputs.SENTENCE, verdict_inputs.BINDINGS}),
+    PROOF: frozenset({verdict_inputs.SENTENCE, verdict_inputs.BINDINGS}),
 }
 """`_SOURCES` for kinds whose texts do not show a change of the node itself."""
 

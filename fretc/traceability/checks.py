@@ -17,7 +17,7 @@ from compiler.project.hazards import without_hazard
 from compiler.project.project import Project
 from compiler.targets.target import TargetOptions
 from fretc.traceability.changes import in_words
-from fretc.traceability.lock import ReviewedRequirement
+from fretc.traceability.lock import ReviewStatus
 from fretish.bindings.declarations import Role
 from fretish.diagnostics.diagnostic import Diagnostic, has_errors, suggestion
 from fretish.diagnostics.messages import diagnostic
@@ -30,12 +30,12 @@ _METHODS = ("audit", *METHODS, *TARGETS)
 """Methods whose results fretc reads, or for which it generates files."""
 
 
-def checks(project: Project, standings: Sequence[ReviewedRequirement]) -> tuple[Diagnostic, ...]:
+def checks(project: Project, statuses: Sequence[ReviewStatus]) -> tuple[Diagnostic, ...]:
     """All warnings, in the order of the project.
 
     Args:
         project: with or without errors; requirements that an error affects are skipped.
-        standings: requirements with their reviews.
+        statuses: requirements with their reviews.
     """
     requirements = project.sound.in_force
     diagnostics = [
@@ -51,7 +51,7 @@ def checks(project: Project, standings: Sequence[ReviewedRequirement]) -> tuple[
     interceptor = TARGETS["interceptor"].remarks(options)
     is_whole = not has_errors(project.general) and not any(r.mistakes for r in project.requirements)
     links = _links(project) if is_whole else ()  # they are asked of all headers and hazards
-    return (*diagnostics, *interceptor, *links, *_changes(project, standings))
+    return (*diagnostics, *interceptor, *links, *_changes(project, statuses))
 
 
 # Vacuity ---------------------------------------------------------------------------------------
@@ -162,22 +162,22 @@ def _links(project: Project) -> Iterator[Diagnostic]:
 # Reviews ---------------------------------------------------------------------------------------
 
 
-def _changes(project: Project, standings: Sequence[ReviewedRequirement]) -> Iterator[Diagnostic]:
+def _changes(project: Project, statuses: Sequence[ReviewStatus]) -> Iterator[Diagnostic]:
     """F512 for each requirement whose review is no longer valid."""
     places = {r.id: r.wording for r in project.requirements}
-    for standing in standings:
-        if not standing.is_suspect or standing.review is None:
+    for status in statuses:
+        if not status.is_suspect or status.review is None:
             continue
-        id = standing.chain.requirement
+        id = status.chain.requirement
         yield diagnostic(
             "changed_since_review",
             places.get(id, Source("", "").span()),
             requirement=id,
-            date=standing.review.date,
-            changes=in_words(standing.changes),
+            date=status.review.date,
+            changes=in_words(status.changes),
             argument=quote(id),
         )
-        if standing.has_other_texts:
+        if status.has_other_texts:
             yield diagnostic(
                 "other_texts",
                 places.get(id, Source("", "").span()),
@@ -186,10 +186,10 @@ def _changes(project: Project, standings: Sequence[ReviewedRequirement]) -> Iter
             )
 
 
-def unreviewed(project: Project, standings: Sequence[ReviewedRequirement]) -> Iterator[Diagnostic]:
+def unreviewed(project: Project, statuses: Sequence[ReviewStatus]) -> Iterator[Diagnostic]:
     """F544 for each requirement in force without a review."""
     by_id = {requirement.id: requirement for requirement in project.requirements}
-    for standing in standings:
-        requirement = by_id[standing.chain.requirement]
-        if standing.review is None and requirement.is_in_force:
+    for status in statuses:
+        requirement = by_id[status.chain.requirement]
+        if status.review is None and requirement.is_in_force:
             yield diagnostic("never_reviewed", requirement.place("id"), requirement=requirement.id)

@@ -11,7 +11,7 @@ from compiler.project.stated_numbers import drifted
 from fretc.audit.evidence.verdicts import VERDICTS, severity
 from fretc.traceability.chain import ANALYSIS, VERDICT, Suspect
 from fretc.traceability.changes import ReviewChange
-from fretc.traceability.lock import Lock, Review, ReviewedRequirement
+from fretc.traceability.lock import Lock, Review, ReviewStatus
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code
 from monitors import kernel
@@ -104,37 +104,37 @@ def _runs(count: int) -> str:
 
 
 def differences(
-    standings: tuple[ReviewedRequirement, ...], baseline: Lock, project: Project | None = None
+    statuses: tuple[ReviewStatus, ...], baseline: Lock, project: Project | None = None
 ) -> tuple[ReviewDifference, ...]:
     """The difference of each requirement, in the order of the project; removed ones come last."""
-    now = tuple(difference(standing, project) for standing in standings)
-    ids = {standing.chain.requirement for standing in standings}
+    now = tuple(difference(status, project) for status in statuses)
+    ids = {status.chain.requirement for status in statuses}
     return (*now, *(_removed(id, baseline) for id in baseline.reviews if id not in ids))
 
 
-def difference(standing: ReviewedRequirement, project: Project | None = None) -> ReviewDifference:
+def difference(status: ReviewStatus, project: Project | None = None) -> ReviewDifference:
     """The difference between a requirement and its review; `new` if it has no review.
 
     Args:
-        standing: the requirement with its review.
+        status: the requirement with its review.
         project: for contradictions between numbers and words; None: they are not searched.
     """
-    chain, review = standing.chain, standing.review
+    chain, review = status.chain, status.review
     if review is None:
         verdicts = _different({}, chain.verdicts)
         return ReviewDifference(chain.requirement, "new", None, (), (), verdicts, 0, ())
     verdicts = _different(review.verdicts, chain.verdicts)
-    is_changed = bool(standing.changes or verdicts or standing.suspects)
+    is_changed = bool(status.changes or verdicts or status.suspects)
     return ReviewDifference(
         chain.requirement,
         "changed" if is_changed else "same",
         review,
-        standing.changes,
-        contradictions(standing, project) if standing.changes and project else (),
+        status.changes,
+        contradictions(status, project) if status.changes and project else (),
         verdicts,
-        sum(node.kind == VERDICT for node in chain.outdated) if standing.changes else 0,
-        standing.suspects,
-        standing.has_other_texts,
+        sum(node.kind == VERDICT for node in chain.outdated) if status.changes else 0,
+        status.suspects,
+        status.has_other_texts,
         any(node.kind == ANALYSIS for node in chain.outdated),
     )
 
@@ -159,21 +159,21 @@ def _worst_first(pair: tuple[str, str, str]) -> tuple[bool, tuple[int, bool], st
 # Contradictions --------------------------------------------------------------------------------
 
 
-def contradictions(standing: ReviewedRequirement, project: Project) -> tuple[str, ...]:
+def contradictions(status: ReviewStatus, project: Project) -> tuple[str, ...]:
     """Texts of a requirement that state another number than its sentence or parameters.
 
     A text that has not changed since the review "still" says so.
     """
-    id = standing.chain.requirement
-    then = standing.review.texts if standing.review else None
-    now = standing.chain.texts
+    id = status.chain.requirement
+    then = status.review.texts if status.review else None
+    now = status.chain.texts
     fields: dict[tuple[str, bool], list[str]] = {}
     for requirement in project.formalized:
         if requirement.id == id and requirement.declarations is not None:
             for field, words in drifted(requirement, requirement.declarations):
                 same = then is not None and getattr(then, field) == getattr(now, field)
                 fields.setdefault((words, same), []).append(_FIELDS[field])
-    found = [_statement(names, words, same) for (words, same), names in fields.items()]
+    statements = [_statement(names, words, same) for (words, same), names in fields.items()]
     for failed in project.failed:
         if failed.requirement.id == id:
             drifts = (
@@ -181,8 +181,8 @@ def contradictions(standing: ReviewedRequirement, project: Project) -> tuple[str
                 for diagnostic in failed.diagnostics
                 if diagnostic.code is Code.NUMBER_DRIFT
             )
-            found.extend(drift.message for drift in drifts)
-    return tuple(dict.fromkeys(found))
+            statements.extend(drift.message for drift in drifts)
+    return tuple(dict.fromkeys(statements))
 
 
 _FIELDS = {"title": "its title", "text": "its text", "params": "its `params`"}

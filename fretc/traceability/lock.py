@@ -16,8 +16,8 @@ import tomli_w
 from compiler.files.dates import is_date, is_in_future
 from compiler.files.text_files import read as read_text
 from fretc.analysis.findings import RealizabilityVerdict
-from fretc.audit.evidence.basis import SENTENCE
 from fretc.audit.evidence.reader import VERDICTS
+from fretc.audit.evidence.verdict_inputs import SENTENCE
 from fretc.traceability.analyses import Realizability
 from fretc.traceability.chain import (
     ACCEPTANCE,
@@ -366,7 +366,7 @@ def _node(text: str) -> ChainItem:
 
 
 @dataclass(frozen=True, slots=True)
-class ReviewedRequirement:
+class ReviewStatus:
     """A present requirement with its review."""
 
     chain: Chain
@@ -400,23 +400,23 @@ class ReviewedRequirement:
         return tuple(dict.fromkeys(cause for suspect in self.suspects for cause in suspect.causes))
 
 
-def standings(chains: Sequence[Chain], lock: Lock | None) -> tuple[ReviewedRequirement, ...]:
+def review_statuses(chains: Sequence[Chain], lock: Lock | None) -> tuple[ReviewStatus, ...]:
     """Each requirement with its review."""
     reviews = lock.reviews if lock else {}
-    return tuple(_standing(chain, reviews.get(chain.requirement)) for chain in chains)
+    return tuple(_review_status(chain, reviews.get(chain.requirement)) for chain in chains)
 
 
-def _standing(chain: Chain, review: Review | None) -> ReviewedRequirement:
+def _review_status(chain: Chain, review: Review | None) -> ReviewStatus:
     if review is None:
-        return ReviewedRequirement(chain, None, (), ())
+        return ReviewStatus(chain, None, (), ())
     prints, texts = review.prints, review.texts
     suspect = suspects(chain, prints)
     if not suspect and not changed(chain.prints, prints):
-        return ReviewedRequirement(chain, review, (), ())
+        return ReviewStatus(chain, review, (), ())
     vouched = texts is None or agree(chain.requirement, texts, prints)
     causes = tuple(dict.fromkeys(cause for item in suspect for cause in item.causes))
     found = changes(chain, prints, review.verdicts, texts if vouched else None, causes)
-    return ReviewedRequirement(chain, review, suspect, found, not vouched)
+    return ReviewStatus(chain, review, suspect, found, not vouched)
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ from compiler.files.records import Record
 from compiler.files.text_files import sha256
 from compiler.formalization.formalize import formalize
 from compiler.project.hazards import Hazard
-from fretc.audit.evidence import basis
+from fretc.audit.evidence import verdict_inputs
 from fretc.traceability.chain import (
     ACCEPTANCE,
     ANALYSIS,
@@ -75,12 +75,12 @@ Key = tuple[str, str, str]
 
 def leaves(id: str, texts: ReviewedTexts) -> Mapping[Key, ReviewText]:
     """Each text of a requirement, in the order in which changes are listed."""
-    found = dict(_of_sentence(id, texts))
+    texts_of = dict(_of_sentence(id, texts))
     declarations = _declarations(texts.bindings) if texts.bindings else None
     if texts.bindings is not None:
-        found |= _of_bindings(id, texts.bindings, declarations)
+        texts_of |= _of_bindings(id, texts.bindings, declarations)
     parts = (_of_header(id, texts), _of_parents(texts), _of_audit(id, texts))
-    return found | dict(chain.from_iterable(parts))
+    return texts_of | dict(chain.from_iterable(parts))
 
 
 def _of_sentence(id: str, texts: ReviewedTexts) -> Iterator[tuple[Key, ReviewText]]:
@@ -88,14 +88,14 @@ def _of_sentence(id: str, texts: ReviewedTexts) -> Iterator[tuple[Key, ReviewTex
     sentence = texts.canonical or written
     yield (
         ("", "", "sentence"),
-        ReviewText(ChainItem(basis.SENTENCE, id), "sentence", written, sentence),
+        ReviewText(ChainItem(verdict_inputs.SENTENCE, id), "sentence", written, sentence),
     )
     # A monitor quotes its sentence: another wording changes its text and not its meaning.
     wording = ReviewText(ChainItem(ARTEFACT, id), "wording", written, (sentence, written))
     yield ("", "", "wording"), wording
     for name, text in texts.params.items():
         meaning = canonical.parameter(text)
-        node, what = ChainItem(basis.PARAMS, id), f"number stated for {name}"
+        node, what = ChainItem(verdict_inputs.PARAMS, id), f"number stated for {name}"
         yield ("params", name, ""), ReviewText(node, what, text, meaning, f"params {name}")
 
 
@@ -138,7 +138,7 @@ def _of_parents(texts: ReviewedTexts) -> Iterator[tuple[Key, ReviewText]]:
 
 def _of_audit(id: str, texts: ReviewedTexts) -> Iterator[tuple[Key, ReviewText]]:
     if texts.topics is not None:
-        node, names = ChainItem(basis.TOPICS, "audited"), ", ".join(texts.topics)
+        node, names = ChainItem(verdict_inputs.TOPICS, "audited"), ", ".join(texts.topics)
         yield ("", "", "topics"), ReviewText(node, "topics that are read", names, texts.topics)
     for claim, (result, *assumptions) in texts.proofs.items():
         node, owner = ChainItem(PROOF, f"{id} {claim}"), f"proof {claim}"
@@ -162,7 +162,7 @@ def _of_audit(id: str, texts: ReviewedTexts) -> Iterator[tuple[Key, ReviewText]]
             )
             yield (SHARED, table, name), leaf
     if texts.fretc:
-        node = ChainItem(basis.FRETC, "version")
+        node = ChainItem(verdict_inputs.FRETC, "version")
         yield ("", "", "fretc"), ReviewText(node, "version of fretc", texts.fretc, texts.fretc)
 
 
@@ -183,22 +183,26 @@ def _of_bindings(
     id: str, bindings: BindingsTexts, declarations: Declarations | None
 ) -> Mapping[Key, ReviewText]:
     """The texts of clock and tables; if they cannot be read, a text is its own meaning."""
-    found: dict[Key, ReviewText] = {}
+    texts: dict[Key, ReviewText] = {}
     for name, table in bindings.proposition.items():
-        found |= _of_table(id, "proposition", name, table, _proposition(name, declarations))
+        texts |= _of_table(id, "proposition", name, table, _proposition(name, declarations))
     for name, table in bindings.signal.items():
-        found |= _of_table(id, "signal", name, table, _signal(name, declarations))
+        texts |= _of_table(id, "signal", name, table, _signal(name, declarations))
     for name, table in bindings.variable.items():
-        found |= _of_table(id, "variable", name, table, _variable(name, declarations))
+        texts |= _of_table(id, "variable", name, table, _variable(name, declarations))
     clock = declarations.clock if declarations else None
     for name in _CLOCK:
-        node = ChainItem(FORMULAS, id) if name == "rounding" else ChainItem(basis.CLOCK, "clock")
+        node = (
+            ChainItem(FORMULAS, id)
+            if name == "rounding"
+            else ChainItem(verdict_inputs.CLOCK, "clock")
+        )
         meaning = (clock.period or clock.topic) if clock and name == "tick" else None
         meaning = getattr(clock, name) if clock and name != "tick" else meaning
         text = str(bindings.clock.get(name, ""))
         leaf = ReviewText(node, f"{name} of the clock", text, text if clock is None else meaning)
-        found["clock", "", name] = leaf
-    return found
+        texts["clock", "", name] = leaf
+    return texts
 
 
 def _of_table(
@@ -222,10 +226,10 @@ def _covered_by(kind: str, field: str) -> str:
     if kind == "proposition" and field in _WORDS:
         return WORDS
     if kind == "variable":
-        return basis.SENTENCE if field == "value" else ARTEFACT
+        return verdict_inputs.SENTENCE if field == "value" else ARTEFACT
     if kind == "signal":
-        return ARTEFACT if field == "role" else basis.BINDINGS
-    return basis.BINDINGS if field in ("expr", "agg", "on_unknown") else ARTEFACT
+        return ARTEFACT if field == "role" else verdict_inputs.BINDINGS
+    return verdict_inputs.BINDINGS if field in ("expr", "agg", "on_unknown") else ARTEFACT
 
 
 def _proposition(name: str, declarations: Declarations | None) -> Mapping[str, Any]:
@@ -300,9 +304,10 @@ def agree(id: str, texts: ReviewedTexts, prints: Mapping[ChainItem, str]) -> boo
     return own.keys() == ours and all(own[node] == prints[node] for node in ours)
 
 
-_VERSION = ChainItem(basis.FRETC, "version")
+_VERSION = ChainItem(verdict_inputs.FRETC, "version")
 _COVERED = (
-    basis.SENTENCE, basis.PARAMS, basis.CLOCK, basis.TOPICS, basis.BINDINGS, basis.FRETC,
+    verdict_inputs.SENTENCE, verdict_inputs.PARAMS, verdict_inputs.CLOCK,
+    verdict_inputs.TOPICS, verdict_inputs.BINDINGS, verdict_inputs.FRETC,
     TEXT, HAZARD, PARENT, STATUS, PLAN, ACCEPTANCE, WORDS,
     PROOF, ANALYSIS,
 )  # fmt: skip
@@ -332,7 +337,7 @@ def _fingerprints(id: str, texts: ReviewedTexts) -> Iterator[tuple[ChainItem, st
     if texts.analysis:
         yield ChainItem(ANALYSIS, id), print_of_proof(texts.analysis[0], texts.analysis[1:])
     if texts.topics is not None:
-        yield ChainItem(basis.TOPICS, "audited"), _of(sorted(set(texts.topics)))
+        yield ChainItem(verdict_inputs.TOPICS, "audited"), _of(sorted(set(texts.topics)))
     if texts.fretc:
         yield _VERSION, _of(texts.fretc)
     yield from _of_meaning(id, texts)
@@ -347,14 +352,14 @@ def _of_meaning(id: str, texts: ReviewedTexts) -> Iterator[tuple[ChainItem, str]
     )
     sentence = requirement.fingerprint if requirement else sha256(_line(texts.sentence))
     is_canonical = canonical_text(requirement) == texts.canonical
-    yield ChainItem(basis.SENTENCE, id), sentence if is_canonical else ""
+    yield ChainItem(verdict_inputs.SENTENCE, id), sentence if is_canonical else ""
     params = {name: canonical.parameter(text) for name, text in texts.params.items()}
-    yield ChainItem(basis.PARAMS, id), _of(params)
+    yield ChainItem(verdict_inputs.PARAMS, id), _of(params)
     clock = _of(canonical.clock(declarations.clock)) if declarations else ""
-    yield ChainItem(basis.CLOCK, "clock"), clock
+    yield ChainItem(verdict_inputs.CLOCK, "clock"), clock
     known = requirement.declarations or declarations if requirement else None
     bound = _of(canonical.bound(known, requirement.watched)) if requirement and known else ""
-    yield ChainItem(basis.BINDINGS, id), bound
+    yield ChainItem(verdict_inputs.BINDINGS, id), bound
     words = canonical.described(known, requirement.watched) if requirement else {}
     if words:
         yield ChainItem(WORDS, id), _of(words)

@@ -28,14 +28,14 @@ _LEAD, _WHOLE, _LONGEST = 40, 240, 2000
 @lru_cache(maxsize=_CACHED)
 def segments(before: str, after: str) -> tuple[Segment, ...]:
     """Segments of both texts: shared pieces, pieces of `before` only, pieces of `after` only."""
-    found: list[Segment] = []
+    parts: list[Segment] = []
     for same, old, new, _ in _stretches(before, after):
         if same:
-            found.append((SAME, _middle(old)))
+            parts.append((SAME, _middle(old)))
             continue
-        found.extend([(BEFORE, _start(old))] if old else [])
-        found.extend([(AFTER, _start(new))] if new else [])
-    return tuple(found)
+        parts.extend([(BEFORE, _start(old))] if old else [])
+        parts.extend([(AFTER, _start(new))] if new else [])
+    return tuple(parts)
 
 
 @lru_cache(maxsize=_CACHED)
@@ -60,18 +60,18 @@ def _stretches(before: str, after: str) -> list[_Stretch]:
     left, right = _tokens(before), _tokens(after)
     if max(len(left), len(right)) > _MOST_TOKENS:
         return _around(before, after)
-    found: list[_Stretch] = []
+    stretches: list[_Stretch] = []
     matcher = SequenceMatcher(None, left, right, autojunk=False)
     for op, i, j, k, m in matcher.get_opcodes():
         old, new = "".join(left[i:j]), "".join(right[k:m])
         same = op == "equal"
-        if found and not found[-1][0] and (not same or (old.isspace() and j < len(left))):
-            _, older, newer, place = found.pop()
-            found.append((False, older + old, newer + new, place))
+        if stretches and not stretches[-1][0] and (not same or (old.isspace() and j < len(left))):
+            _, older, newer, place = stretches.pop()
+            stretches.append((False, older + old, newer + new, place))
         else:
             places = (sum(map(len, left[:i])), sum(map(len, right[:k])))
-            found.append((same, old, new, places))
-    return found
+            stretches.append((same, old, new, places))
+    return stretches
 
 
 def _around(before: str, after: str) -> list[_Stretch]:
@@ -85,9 +85,10 @@ def _around(before: str, after: str) -> list[_Stretch]:
     end = len(before) - space if space >= 0 else 0
     old, new = before[start : len(before) - end], after[start : len(after) - end]
     tail = before[len(before) - end :]
-    found: list[_Stretch] = [(True, before[:start], before[:start], (0, 0))] if start else []
-    found += [(False, old, new, (start, start))] if old or new else []
-    return [*found, *([(True, tail, tail, (start + len(old), start + len(new)))] if end else [])]
+    stretches: list[_Stretch] = [(True, before[:start], before[:start], (0, 0))] if start else []
+    stretches += [(False, old, new, (start, start))] if old or new else []
+    stretches += [(True, tail, tail, (start + len(old), start + len(new)))] if end else []
+    return stretches
 
 
 def _shared(before: str, after: str) -> int:
@@ -98,16 +99,16 @@ def _shared(before: str, after: str) -> int:
 
 def _tokens(text: str) -> list[str]:
     """Words and the white space between them; joined, they are the whole text."""
-    found: list[str] = []
-    place = 0
-    while place < len(text) and len(found) <= _MOST_TOKENS:
-        match = _TOKEN.match(text, place)
+    tokens: list[str] = []
+    start = 0
+    while start < len(text) and len(tokens) <= _MOST_TOKENS:
+        match = _TOKEN.match(text, start)
         assert match is not None, "a character is white space, a sign, or part of a word"
         known = match["number"] is None or _is_unit(match["unit"])
         end = match.end() if known else match.end("number")
-        found.append(text[place:end])
-        place = end
-    return found
+        tokens.append(text[start:end])
+        start = end
+    return tokens
 
 
 def _is_unit(word: str) -> bool:

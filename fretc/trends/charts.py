@@ -53,10 +53,10 @@ def strip(round_outcomes: Sequence[RoundOutcome | None]) -> dict[str, Any]:
     first = max(0, len(round_outcomes) - MOST_CELLS)
     shown = round_outcomes[first:]
     cells = []
-    for place, outcome in enumerate(shown):
+    for index, outcome in enumerate(shown):
         kind, height = _CELLS[outcome]
         top = _TALL - height
-        cells.append({"kind": kind, "x": place * _CELL + 1, "y": top, "height": height})
+        cells.append({"kind": kind, "x": index * _CELL + 1, "y": top, "height": height})
     size = {"width": _CELL * len(shown), "height": _TALL, "cell": _CELL - 2}
     return {**size, "cells": cells, "text": _in_words(shown, first + 1)}
 
@@ -184,8 +184,8 @@ def chart(
     scenarios = sorted({str(value.scenario) for value in one.values}, key=natural)
     for value in sorted(one.values, key=lambda value: scenarios.index(str(value.scenario))):
         of_round[value.round].append(value)
-        place = scenarios.index(str(value.scenario))
-        fits = place < _MOST_PANELS - 1 or len(scenarios) <= _MOST_PANELS
+        index = scenarios.index(str(value.scenario))
+        fits = index < _MOST_PANELS - 1 or len(scenarios) <= _MOST_PANELS
         panels[str(value.scenario) if fits else "other scenarios"].append(value)
     every = max(1, -(-len(rounds) // _LABELS))
     base = _TOP + _PANEL * len(panels)
@@ -235,8 +235,7 @@ def _panel(
         ],
         "bound": None if bound is None else y(bound),
         "marks": [
-            (y(place), phrases.value(place, one.measure.unit))
-            for place in places(y.first, y.last, 3)
+            (y(mark), phrases.value(mark, one.measure.unit)) for mark in places(y.first, y.last, 3)
         ],
     }
 

@@ -246,8 +246,8 @@ def _measures(
     if not judged:
         return
     judged.sort(key=lambda one: (one.round, histories.runs[one.run].time or -1, one.run))
-    basis = judged[-1].basis
-    same = [outcome for outcome in judged if outcome.basis == basis]
+    verdict_inputs = judged[-1].verdict_inputs
+    same = [outcome for outcome in judged if outcome.verdict_inputs == verdict_inputs]
     for kind in (MeasureKind.LONGEST, MeasureKind.MEDIAN):
         numbers = [one.longest if kind is MeasureKind.LONGEST else one.median for one in same]
         values = [_value(histories.runs, *pair) for pair in zip(same, numbers, strict=True)]
@@ -270,8 +270,8 @@ def _margins(
     known = {one.run: one for one in same}
     found: dict[ComparedMeasure, dict[int, float]] = defaultdict(dict)
     for source, places in zip(histories.sources, histories.places, strict=True):
-        for place, thresholds in source.thresholds([requirement]):
-            run = places[place]
+        for index, thresholds in source.thresholds([requirement]):
+            run = places[index]
             for each in thresholds if run in known else ():
                 margin = 0.0 if each.comparison == "crossed" else each.margin
                 if margin is not None:
@@ -293,6 +293,6 @@ def amount(number: float, unit: str) -> str:
     return value(float(f"{number:.3g}"), unit)
 
 
-def by_finding(found: Sequence[VersionComparison]) -> Mapping[ComparisonFinding, int]:
+def by_finding(comparisons: Sequence[VersionComparison]) -> Mapping[ComparisonFinding, int]:
     """The number of comparisons with each finding."""
-    return {kind: sum(one.finding is kind for one in found) for kind in ComparisonFinding}
+    return {kind: sum(one.finding is kind for one in comparisons) for kind in ComparisonFinding}

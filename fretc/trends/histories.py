@@ -16,9 +16,9 @@ from dataclasses import field
 from datetime import UTC, datetime
 from pathlib import PurePosixPath
 
-from fretc.audit.evidence.basis import BINDINGS, CLOCK, PARAMS, SENTENCE, TOPICS
 from fretc.audit.evidence.result_summaries import EvidenceSource, ResultSummary, RunFacts
 from fretc.audit.evidence.schema import Selection
+from fretc.audit.evidence.verdict_inputs import BINDINGS, CLOCK, PARAMS, SENTENCE, TOPICS
 from fretish.classes.frozen import dataclass
 from fretish.reading.natural_order import natural
 
@@ -26,7 +26,7 @@ EVIDENCE, DAY = "evidence", "day"
 """The kinds of rounds other than the values of a label."""
 SCENARIO, VERSION, COMMIT, DATE = "scenario", "version", "commit", "date"
 """Labels with a meaning for trends."""
-_BASIS = (SENTENCE, PARAMS, CLOCK, TOPICS, BINDINGS)
+_INPUTS = (SENTENCE, PARAMS, CLOCK, TOPICS, BINDINGS)
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -73,7 +73,7 @@ class Round:
     runs: int
     versions: tuple[str, ...]
     requirements: frozenset[str]
-    """Ids of the requirements that its runs were judged by."""
+    """Ids of the requirements by which its runs were evaluated."""
     selections: tuple[Selection, ...]
     """The selections of its evidence, if not all logs were audited."""
 
@@ -94,7 +94,7 @@ class RunOutcome:
     """The index in `Histories.runs`; -1: all runs of the evidence together."""
     round: int
     verdict: str
-    basis: int
+    verdict_inputs: int
     """The number of its verdict inputs: equal numbers have equal inputs."""
     longest: float | None = None
     """The longest latency in seconds."""
@@ -116,7 +116,7 @@ class Histories:
     sources: tuple[EvidenceSource, ...] = field(repr=False)
     places: tuple[Sequence[int], ...] = field(repr=False)
     """For each source, the run of the result at each index."""
-    bases: tuple[Sequence[int], ...] = field(repr=False)
+    verdict_inputs: tuple[Sequence[int], ...] = field(repr=False)
     """For each source, the verdict inputs of the result at each index."""
 
     @property
@@ -201,7 +201,7 @@ def histories(sources: Sequence[EvidenceSource], by: str | None = None) -> Histo
         _order(rounds, undated=undated),
         tuple(ordered),
         tuple(reader.places),
-        tuple(reader.bases),
+        tuple(reader.verdict_inputs),
     )
 
 
@@ -282,7 +282,7 @@ class _HistoryReader:
         self.requirements: dict[str, str] = {}
         self.judged: dict[tuple[str, ComparableRuns], list[RunOutcome]] = defaultdict(list)
         self.places: list[Sequence[int]] = []
-        self.bases: list[Sequence[int]] = []
+        self.verdict_inputs: list[Sequence[int]] = []
         self._by, self._round_of = by, round_of
         self._numbers: dict[tuple[str, ...], int] = {}
 
@@ -296,15 +296,15 @@ class _HistoryReader:
             requirement.id: requirement.sentence for requirement in source.requirements
         }
         together = {probability.requirement for probability in source.probabilities}
-        places, bases = array("q"), array("q")
+        places, numbers = array("q"), array("q")
         for _, summary in source.summaries():
-            run, basis = run_of[summary.run], self._basis(summary)
+            run, verdict_inputs = run_of[summary.run], self._verdict_inputs(summary)
             places.append(run)
-            bases.append(basis)
+            numbers.append(verdict_inputs)
             if summary.requirement not in together:
-                self._add(summary, run, basis)
+                self._add(summary, run, verdict_inputs)
         self.places.append(places)
-        self.bases.append(bases)
+        self.verdict_inputs.append(numbers)
         self._add_estimates(source, number, [self.runs[i].round for i in run_of.values()])
 
     def _run(self, facts: RunFacts, round_: int) -> HistoryRun:
@@ -319,14 +319,14 @@ class _HistoryReader:
             time_of(facts),
         )
 
-    def _add(self, summary: ResultSummary, run: int, basis: int) -> None:
+    def _add(self, summary: ResultSummary, run: int, verdict_inputs: int) -> None:
         one = self.runs[run]
         self.judged[summary.requirement, one.scenario].append(
             RunOutcome(
                 run,
                 one.round,
                 summary.verdict,
-                basis,
+                verdict_inputs,
                 summary.latency_max_s,
                 summary.latency_median_s,
             )
@@ -340,9 +340,9 @@ class _HistoryReader:
                 RunOutcome(-1, own, probability.answer, 0)
             )
 
-    def _basis(self, summary: ResultSummary) -> int:
+    def _verdict_inputs(self, summary: ResultSummary) -> int:
         prints = summary.fingerprints
-        parts = tuple(str(getattr(prints, name)) for name in _BASIS)
+        parts = tuple(str(getattr(prints, name)) for name in _INPUTS)
         return self._numbers.setdefault(parts, len(self._numbers))
 
 

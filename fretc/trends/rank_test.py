@@ -64,8 +64,8 @@ def doubled_ranks(numbers: Sequence[float]) -> list[int]:
         j = i
         while j < len(order) and numbers[order[j]] == numbers[order[i]]:
             j += 1
-        for place in order[i:j]:
-            ranks[place] = i + j + 1  # twice the mean of i + 1 .. j
+        for index in order[i:j]:
+            ranks[index] = i + j + 1  # twice the mean of i + 1 .. j
         i = j
     return ranks
 
@@ -115,7 +115,7 @@ def holm(values: Sequence[float]) -> list[float]:
     """
     adjusted, highest = [0.0] * len(values), 0.0
     order = sorted(range(len(values)), key=values.__getitem__)
-    for place, i in enumerate(order):
-        highest = max(highest, min(1.0, (len(values) - place) * values[i]))
+    for index, i in enumerate(order):
+        highest = max(highest, min(1.0, (len(values) - index) * values[i]))
         adjusted[i] = highest
     return adjusted

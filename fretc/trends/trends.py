@@ -217,8 +217,8 @@ def _item(
     known: Histories, requirement: str, scenario: ComparableRuns, judged: Sequence[RunOutcome]
 ) -> Item:
     rounds = verdicts_of_rounds(judged, len(known.rounds))
-    basis = max(judged, key=lambda one: one.round).basis
-    comparable = [outcome for outcome in judged if outcome.basis == basis]
+    verdict_inputs = max(judged, key=lambda one: one.round).verdict_inputs
+    comparable = [outcome for outcome in judged if outcome.verdict_inputs == verdict_inputs]
     of_software: dict[str, list[str]] = defaultdict(list)
     for one in comparable:
         software = known.runs[one.run].software if one.run >= 0 else f"all of {one.round}"

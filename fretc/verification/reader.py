@@ -40,12 +40,12 @@ DEFAULT = "build/verification.json"
 
 def read(path: str) -> Proofs | Diagnostic:
     """Read and check a file of `fretc verify`."""
-    found = records.read(
+    file = records.read(
         path, VerificationDocument, "fretc verify", "verify again: `fretc verify FILE...`"
     )
-    if isinstance(found, Diagnostic):
-        return found
-    source, document = found
+    if isinstance(file, Diagnostic):
+        return file
+    source, document = file
     return Proofs(source.name, sha256(source.text), document)
 
 

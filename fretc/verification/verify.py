@@ -33,7 +33,7 @@ def prove(project: Project, request: Request) -> tuple[Proof, ...] | Diagnostic:
             if isinstance(results, Diagnostic):
                 return results
             (single if method.of_requirement else common).extend(results)
-    places = {requirement.id: place for place, requirement in enumerate(project.formalized)}
+    places = {requirement.id: index for index, requirement in enumerate(project.formalized)}
     proofs = (*sorted(single, key=lambda each: places[each.requirement]), *common)
     return tuple(_open_where_demanded(proof, project, request) for proof in proofs)
 

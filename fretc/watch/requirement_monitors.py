@@ -10,7 +10,7 @@ from fretc.audit.plan import Plan
 from fretc.logs.stream import ClockTick, Withdrawn
 from monitors import kernel
 from monitors.kernel import Column, Monitor, Outcome
-from monitors.kernel.stepping import Standing
+from monitors.kernel.stepping import RequirementStatus
 from monitors.kernel.verdicts import Truth, Verdict
 from monitors.loading import load
 from monitors.ticking import Ledger
@@ -45,9 +45,9 @@ class RequirementMonitors:
             self.ledger.insert(late.tick, self.propositions)
         self.ledger.withdraw(late.first, late.last, late.propositions)
 
-    def standings(self) -> tuple[Standing, ...]:
+    def statuses(self) -> tuple[RequirementStatus, ...]:
         """The state of each requirement if the trace ended here."""
-        return tuple(standing for monitor in self.monitors for standing in monitor.standings())
+        return tuple(status for monitor in self.monitors for status in monitor.statuses())
 
     def obligation_pending(self, rows: Iterable[Mapping[str, Truth]] = ()) -> tuple[Truth, ...]:
         """For each requirement, whether an obligation is open.
@@ -56,15 +56,15 @@ class RequirementMonitors:
             rows: further ticks, without an effect on the monitors.
         """
         ahead = tuple(rows)
-        found = (
-            monitor.standings_after(ahead) if ahead else monitor.standings()
+        results = (
+            monitor.statuses_after(ahead) if ahead else monitor.statuses()
             for monitor in self.monitors
         )
-        return tuple(standing.obligation_pending for standings in found for standing in standings)
+        return tuple(status.obligation_pending for statuses in results for status in statuses)
 
     def last_triggers(self) -> tuple[int | None, ...]:
         """For each requirement, the time of the last tick with a certain trigger."""
-        marks = (monitor.must.marks()[0] for monitor in self.monitors)
+        marks = (monitor.certain.marks()[0] for monitor in self.monitors)
         return tuple(self.ledger.time(mark.last) if mark.last >= 0 else None for mark in marks)
 
     def verdicts(self, cut: Mapping[str, Truth] | None, *, intact: bool) -> dict[str, str]:
@@ -98,18 +98,18 @@ def _outcome(
 ) -> tuple[Outcome, ...]:
     """The outcome of a monitor after its steps, and possibly one more, which it does not keep."""
     more = [{name: columns[name].at(before) for name in monitor.PROPOSITIONS}] * (ticks > before)
-    (standing,) = monitor.standings_after(more)
-    verdict = standing.verdict
+    (status,) = monitor.statuses_after(more)
+    verdict = status.verdict
     if end == kernel.VIOLATED and verdict == kernel.INCONCLUSIVE:
         verdict = kernel.VIOLATED
     nothing: tuple[()] = ()
-    first = standing.first_violation
+    first = status.first_violation
     return (
         Outcome(
-            standing.requirement,
+            status.requirement,
             monitor.tick + 1 + len(more),
             verdict,
-            standing.finite,
+            status.finite,
             first,
             *(nothing,) * 5,
         ),

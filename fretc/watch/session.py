@@ -23,7 +23,7 @@ from fretish.classes.frozen import dataclass
 from fretish.clock import TimeSource
 from fretish.diagnostics.diagnostic import Diagnostic
 from monitors.kernel.columns import rows_of
-from monitors.kernel.stepping import Standing
+from monitors.kernel.stepping import RequirementStatus
 from monitors.kernel.verdicts import Truth
 from monitors.stop_supervisor import State
 from monitors.ticking import Ledger, is_jump
@@ -104,12 +104,12 @@ class Session:
     @cached_property
     def reads(self) -> Mapping[str, tuple[str, ...]]:
         """For each requirement, the topics on which it depends."""
-        of, found = self._plan.declarations, {}
+        of, reads = self._plan.declarations, {}
         for monitor in self._monitors.monitors:
             names = {n for name in monitor.PROPOSITIONS for n in of.propositions[name].signals}
             topics = {of.signals[name].path.topic for name in names}
-            found[monitor.REQUIREMENTS[0].id] = tuple(sorted(topics))
-        return found
+            reads[monitor.REQUIREMENTS[0].id] = tuple(sorted(topics))
+        return reads
 
     @property
     def missed(self) -> tuple[Gap, ...]:
@@ -252,31 +252,31 @@ class Session:
             self._ahead if ahead and self._ahead is not None else monitors.obligation_pending()
         )
         pending = (None,) * len(pending) if self.interrupted else pending
-        read = zip(monitors.standings(), pending, monitors.last_triggers(), strict=True)
+        read = zip(monitors.statuses(), pending, monitors.last_triggers(), strict=True)
         return tuple(
             State(
-                standing.requirement,
-                self._verdict(standing),
-                owing,
+                status.requirement,
+                self._verdict(status),
+                is_pending,
                 trigger,
-                self._tick_time(standing.open),
-                self._tick_time(standing.deadline),
+                self._tick_time(status.open),
+                self._tick_time(status.deadline),
                 None
-                if standing.requirement in monitors.counted
-                else self._tick_time(standing.first_violation),
+                if status.requirement in monitors.counted
+                else self._tick_time(status.first_violation),
             )
-            for standing, owing, trigger in read
+            for status, is_pending, trigger in read
         )
 
     @property
     def _time_passed(self) -> int:
         return self.received - self._patience
 
-    def _verdict(self, standing: Standing) -> str:
+    def _verdict(self, status: RequirementStatus) -> str:
         """The verdict of a run that has ended; a run with missed messages satisfies nothing."""
-        if standing.requirement in self._final:
-            return self._final[standing.requirement]
-        verdict = self._monitors.audit_verdict(standing.requirement, str(standing.verdict))
+        if status.requirement in self._final:
+            return self._final[status.requirement]
+        verdict = self._monitors.audit_verdict(status.requirement, str(status.verdict))
         return "no data" if self._missed and verdict in ("satisfied", "vacuous") else verdict
 
     def _tick_time(self, tick: int | None) -> int | None:

@@ -60,7 +60,7 @@ class Watch:
         self._looked = 0
         """The receive time of the last update of open obligations."""
         self._judged = 0, 0
-        """The number of ticks judged by then, and of those that had become unknown."""
+        """The number of ticks evaluated until then, and of those that had become unknown."""
         self._silent: set[str] = set()
         self._lost_since: int | None = None
         self._has_begun = False

@@ -96,7 +96,7 @@ def _exponent(written: e.Expression) -> int | None:
 
 
 def in_own_units(
-    comparison: e.Comparison, signals: Mapping[str, Signal], place: Span
+    comparison: e.Comparison, signals: Mapping[str, Signal], span: Span
 ) -> e.Comparison | Diagnostic:
     """The comparison with each quantity (`20 %`) as a bare number in the unit of its signal.
 
@@ -106,36 +106,36 @@ def in_own_units(
     Args:
         comparison: a comparison of a sentence for which `is_measured` is true.
         signals: the declared signals.
-        place: the span of a diagnostic about a part without a span.
+        span: the span of a diagnostic about a part without a span.
     """
-    return _ComparisonRewriter(signals, place, bare=True).comparison(comparison)
+    return _ComparisonRewriter(signals, span, bare=True).comparison(comparison)
 
 
 def bound(
-    comparison: e.Comparison, signals: Mapping[str, Signal], place: Span
+    comparison: e.Comparison, signals: Mapping[str, Signal], span: Span
 ) -> e.Comparison | Diagnostic:
     """The comparison as an expression of bindings, in which each number has its unit."""
-    rewritten = _ComparisonRewriter(signals, place, bare=False).comparison(comparison)
+    rewritten = _ComparisonRewriter(signals, span, bare=False).comparison(comparison)
     if isinstance(rewritten, Diagnostic):
         return rewritten
     kinds = {name: signal.unit.dimension for name, signal in signals.items()}
-    dimension = binding.dimension(rewritten, kinds, comparison.span or place)
+    dimension = binding.dimension(rewritten, kinds, comparison.span or span)
     return dimension if isinstance(dimension, Diagnostic) else rewritten
 
 
-def is_mixed(comparison: e.Comparison, signals: Mapping[str, Signal], place: Span) -> bool:
+def is_mixed(comparison: e.Comparison, signals: Mapping[str, Signal], span: Span) -> bool:
     """Whether the comparison combines signals in different units of one dimension."""
     return is_measured(comparison, signals) and _ComparisonRewriter(
-        signals, place, bare=True
+        signals, span, bare=True
     ).is_mixed(comparison)
 
 
 class _ComparisonRewriter:
     """Rewrites the numbers of a comparison into the units that their operands require."""
 
-    def __init__(self, signals: Mapping[str, Signal], place: Span, *, bare: bool) -> None:
+    def __init__(self, signals: Mapping[str, Signal], span: Span, *, bare: bool) -> None:
         self._signals = signals
-        self._place = place
+        self._place = span
         self._bare = bare
         self._measures: dict[int, _NumberUnit | None] = {}
         """`id(part)` → its unit. Hashing a tree would take time proportional to its size."""
@@ -386,14 +386,14 @@ def _describe(measure: _NumberUnit) -> str:
     return f"a quantity in {measure.name}"
 
 
-def _mismatch(left: _NumberUnit, right: _NumberUnit, place: Span) -> Diagnostic:
-    return diagnostic("quantities_differ", place, left=_describe(left), right=_describe(right))
+def _mismatch(left: _NumberUnit, right: _NumberUnit, span: Span) -> Diagnostic:
+    return diagnostic("quantities_differ", span, left=_describe(left), right=_describe(right))
 
 
-def _ambiguous_unit(place: Span, target: _NumberUnit) -> Diagnostic:
+def _ambiguous_unit(span: Span, target: _NumberUnit) -> Diagnostic:
     plain = target.unit.dimension == DIMENSIONLESS
     return diagnostic(
         "ambiguous_number",
-        place,
+        span,
         help="write it in percent: 2 is `200 %`" if plain else "write its unit: `5 m/s`",
     )

@@ -86,8 +86,8 @@ class _ExpressionBuilder(Transformer_NonRecursive[Token, Any]):
         if duration is None:
             text = str(token)
             before = len(text) - len(text.lstrip())
-            place = self._span(token).part(before, len(text))
-            raise _ExpressionError(diagnostic("not_a_duration", place, text=text.strip()))
+            span = self._span(token).part(before, len(text))
+            raise _ExpressionError(diagnostic("not_a_duration", span, text=text.strip()))
         return e.Persistence(arg, duration)
 
     def either(self, children: list[Any]) -> e.Expression:
@@ -112,10 +112,10 @@ class _ExpressionBuilder(Transformer_NonRecursive[Token, Any]):
 
     def power(self, children: list[Any]) -> e.Expression:
         base, _, exponent = children
-        place = self._span(exponent)
+        span = self._span(exponent)
         digits = exponent.strip()
-        place = place.part(len(exponent) - len(digits), len(exponent))
-        return e.Arithmetic("^", base, e.Number(digits, place))
+        span = span.part(len(exponent) - len(digits), len(exponent))
+        return e.Arithmetic("^", base, e.Number(digits, span))
 
     def negation(self, children: list[Any]) -> e.Expression:
         return e.Negation(*_parts(children))
@@ -204,48 +204,48 @@ def dimension(
 
 
 def _truths(
-    args: tuple[e.Expression, ...], kinds: Mapping[str, Kind], place: Span
+    args: tuple[e.Expression, ...], kinds: Mapping[str, Kind], span: Span
 ) -> Diagnostic | None:
     for arg in args:
-        kind = dimension(arg, kinds, place)
+        kind = dimension(arg, kinds, span)
         if isinstance(kind, Diagnostic):
             return kind
         if isinstance(arg, e.Name) and kind == DIMENSIONLESS:
             continue  # 1 is true, and 0 is false
         if kind is not None:
-            return _kind_error("a truth value is needed, and this is a number", arg, place)
+            return _kind_error("a truth value is needed, and this is a number", arg, span)
     return None
 
 
 def _numbers(
-    args: list[e.Expression], kinds: Mapping[str, Kind], place: Span
+    args: list[e.Expression], kinds: Mapping[str, Kind], span: Span
 ) -> Dimension | Diagnostic:
     """The common dimension of the operands."""
     common: Dimension | None = None
     for arg in args:
-        kind = dimension(arg, kinds, place)
+        kind = dimension(arg, kinds, span)
         if isinstance(kind, Diagnostic):
             return kind
         if kind is None:
-            return _kind_error("a number is needed, and this is a truth value", arg, place)
+            return _kind_error("a number is needed, and this is a truth value", arg, span)
         if common is not None and kind != common:
             return _mismatch(
                 f"{_describe(common)} cannot be compared with or added to {_describe(kind)}",
                 arg,
-                place,
+                span,
             )
         common = kind
     return common or DIMENSIONLESS
 
 
 def _arithmetic(
-    op: str, left: e.Expression, right: e.Expression, kinds: Mapping[str, Kind], place: Span
+    op: str, left: e.Expression, right: e.Expression, kinds: Mapping[str, Kind], span: Span
 ) -> Kind | Diagnostic:
     if op in ("+", "-", "mod"):
-        return _numbers([left, right], kinds, place)
+        return _numbers([left, right], kinds, span)
     if op == "^":
-        return _power(left, right, kinds, place)
-    first, second = _numbers([left], kinds, place), _numbers([right], kinds, place)
+        return _power(left, right, kinds, span)
+    first, second = _numbers([left], kinds, span), _numbers([right], kinds, span)
     if isinstance(first, Diagnostic):
         return first
     if isinstance(second, Diagnostic):
@@ -282,20 +282,20 @@ def _describe(dimension: Dimension) -> str:
     return f"a quantity in {name}" if name else "a number without a unit"
 
 
-def _mismatch(message: str, part: e.Expression, place: Span) -> Diagnostic:
+def _mismatch(message: str, part: e.Expression, span: Span) -> Diagnostic:
     return Diagnostic(
         Code.UNIT_MISMATCH,
         message,
-        getattr(part, "span", None) or place,
+        getattr(part, "span", None) or span,
         help="give each number its unit: `min_range < 5 cm`",
     )
 
 
-def _kind_error(message: str, part: e.Expression, place: Span) -> Diagnostic:
+def _kind_error(message: str, part: e.Expression, span: Span) -> Diagnostic:
     return Diagnostic(
         Code.BAD_EXPRESSION,
         message,
-        getattr(part, "span", None) or place,
+        getattr(part, "span", None) or span,
         help="compare numbers, `x < 5 m`, and join truth values by `and`, `or`, `not`",
     )
 
@@ -336,17 +336,17 @@ def is_truth(expression: e.Expression) -> bool:
 
 
 def plain_percents(
-    expression: e.Expression, percents: Collection[str], place: Span
+    expression: e.Expression, percents: Collection[str], span: Span
 ) -> Iterator[Diagnostic]:
     """F338 for each comparison of a signal in percent with a plain number above 1.
 
     Args:
         expression: an expression with consistent dimensions.
         percents: the names of the signals in percent.
-        place: the span of a diagnostic about a number without a span.
+        span: the span of a diagnostic about a number without a span.
     """
     for part in e.children(expression):
-        yield from plain_percents(part, percents, place)
+        yield from plain_percents(part, percents, span)
     if not isinstance(expression, e.Comparison):
         return
     for side, other in ((expression.left, expression.right), (expression.right, expression.left)):
@@ -357,7 +357,7 @@ def plain_percents(
         if Fraction(limit.digits) > 1:
             yield diagnostic(
                 "plain_percent",
-                limit.span or place,
+                limit.span or span,
                 signals=", ".join(sorted(measured)),
                 digits=limit.digits,
             )

@@ -52,31 +52,29 @@ def kind(type_name: str) -> Kind | None:
     return next((value_kind for pattern, value_kind in _KINDS if re.fullmatch(pattern, name)), None)
 
 
-def type_errors(
-    expression: e.Expression, variables: Variables, place: Span
-) -> Iterator[Diagnostic]:
+def type_errors(expression: e.Expression, variables: Variables, span: Span) -> Iterator[Diagnostic]:
     """F344 for each use of a variable in a Boolean expression that its type does not allow.
 
     Args:
         expression: a Boolean expression.
         variables: the declared variables.
-        place: the span of a diagnostic about a part without a span.
+        span: the span of a diagnostic about a part without a span.
     """
-    yield from _Check(variables, place).truth(expression)
+    yield from _Check(variables, span).truth(expression)
 
 
 def value_type_errors(variable: Variable, variables: Variables) -> Iterator[Diagnostic]:
     """F344 if the value of a variable does not have its type, and for each misuse in the value."""
-    value, place = variable.value, variable.span
+    value, span = variable.value, variable.span
     assert value is not None
-    assert place is not None
-    check = _Check(variables, place)
+    assert span is not None
+    check = _Check(variables, span)
     declared, actual = kind(variable.type), check.kind(value)
     if declared is not None and actual is not None and declared.is_number != actual.is_number:
         yield _type_error(
             f"is declared {variable.type}, and its value is a {_kind_name(actual)}",
             variable.name,
-            place,
+            span,
         )
     elif declared is not None:
         yield from check.fits(variable.name, declared, value)
@@ -91,9 +89,9 @@ _NUMBERS = frozenset("preInt preReal absReal absInt maxReal maxInt minReal minIn
 class _Check:
     """Checks an expression with the kind that each part must have."""
 
-    def __init__(self, variables: Variables, place: Span) -> None:
+    def __init__(self, variables: Variables, span: Span) -> None:
         self._variables = variables
-        self._place = place
+        self._place = span
 
     def truth(self, tree: e.Expression) -> Iterator[Diagnostic]:
         """The errors of a part that must be a truth value."""
@@ -144,8 +142,8 @@ class _Check:
             why = "below 0"
         else:
             return
-        place = getattr(value, "span", None) or self._place
-        yield _type_error(f"is declared {self._type(id)}, and {printed(value)} is {why}", id, place)
+        span = getattr(value, "span", None) or self._place
+        yield _type_error(f"is declared {self._type(id)}, and {printed(value)} is {why}", id, span)
 
     def _comparison(self, tree: e.Comparison) -> Iterator[Diagnostic]:
         """Truth values can be compared by `=` and `!=`; every other comparison needs numbers."""
@@ -201,5 +199,5 @@ def _kind_name(kind: Kind) -> str:
     return "truth value" if kind is Kind.TRUTH else "number"
 
 
-def _type_error(why: str, id: str, place: Span) -> Diagnostic:
-    return diagnostic("variable_type", place, id=id, why=why)
+def _type_error(why: str, id: str, span: Span) -> Diagnostic:
+    return diagnostic("variable_type", span, id=id, why=why)

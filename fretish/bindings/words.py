@@ -24,7 +24,7 @@ _MOST_LISTED = 12
 
 @with_recursion_limit
 def resolve_words(
-    expression: e.Expression, signals: Mapping[str, Signal], place: Span | None = None
+    expression: e.Expression, signals: Mapping[str, Signal], span: Span | None = None
 ) -> e.Expression | Diagnostic:
     """The expression with each word as a `Word`, and without comparisons with `true` or `false`.
 
@@ -33,14 +33,14 @@ def resolve_words(
     Args:
         expression: a Boolean expression of bindings or of a sentence.
         signals: name → signal; other names are not checked.
-        place: the span of a diagnostic about a part without a span.
+        span: the span of a diagnostic about a part without a span.
 
     Returns:
         The expression, or a diagnostic: a word that is not a value of its signal, an order or
         arithmetic of words, or a signal with a unit that is used as a truth value.
     """
     try:
-        return _Resolver(signals, place).truth(expression)
+        return _Resolver(signals, span).truth(expression)
     except _WordError as error:
         return error.diagnostic
 

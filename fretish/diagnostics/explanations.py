@@ -75,8 +75,8 @@ def text(code: Code) -> str:
     blocks.append(_block(_wrapped(explanation.cause)))
     blocks.append(_block(_wrapped(f"To fix it: {explanation.fix}")))
     if explanation.accept:
-        place, example = ACCEPTANCES[explanation.accept]
-        blocks.append(_example(f"to accept it, in {place}", example.format(code.number)))
+        where, example = ACCEPTANCES[explanation.accept]
+        blocks.append(_example(f"to accept it, in {where}", example.format(code.number)))
     if explanation.declared:
         blocks.append(_example("bindings.toml", explanation.declared))
     if explanation.wrong:

@@ -18,7 +18,7 @@ def install_help(extra: str) -> str:
 
 
 def missing_extra(
-    need: str, packages: Sequence[str], extra: str, place: Span | None = None
+    need: str, packages: Sequence[str], extra: str, span: Span | None = None
 ) -> Diagnostic:
     """F908 for missing packages.
 
@@ -26,11 +26,11 @@ def missing_extra(
         need: the feature and a verb: `signatures need`.
         packages: the missing packages.
         extra: the extra that installs them.
-        place: the span that needs the feature, if there is one.
+        span: the span that needs the feature, if there is one.
     """
     *some, last = [f"`{name}`" for name in packages]
     names = f"{', '.join(some)} and {last}" if some else last
-    return diagnostic("missing_extra", place, need=need, names=names, help=install_help(extra))
+    return diagnostic("missing_extra", span, need=need, names=names, help=install_help(extra))
 
 
 def unless_installed(need: str, packages: Sequence[str], extra: str) -> Diagnostic | None:

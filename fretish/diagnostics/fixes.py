@@ -72,14 +72,14 @@ class FixedText:
 
     def _original(self, at: int) -> tuple[int, int]:
         """The start and end in the original text of a character of the fixed text."""
-        place = self.original.start + at
+        start = self.original.start + at
         for fix in self.fixes:
-            if place < fix.span.start:
+            if start < fix.span.start:
                 break
-            if place < fix.span.start + len(fix.text):
+            if start < fix.span.start + len(fix.text):
                 return fix.span.start, fix.span.end
-            place += fix.span.end - fix.span.start - len(fix.text)
-        return place, place + 1
+            start += fix.span.end - fix.span.start - len(fix.text)
+        return start, start + 1
 
 
 def removal(span: Span, *, is_safe: bool = False) -> Fix:

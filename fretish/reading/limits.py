@@ -84,12 +84,12 @@ def extend_budget(size: int) -> None:
         current.memory += size * _MEMORY_A_BYTE
 
 
-def with_budget(size: int, place: Span, reading: Callable[[], R]) -> R | Diagnostic:
+def with_budget(size: int, span: Span, reading: Callable[[], R]) -> R | Diagnostic:
     """The result of the call; F930 if it exceeds the budget for `size` bytes.
 
     Args:
         size: the number of bytes to read.
-        place: the span for the diagnostic.
+        span: the span for the diagnostic.
         reading: the function to call.
     """
     inner = bool(_budgets)
@@ -99,17 +99,17 @@ def with_budget(size: int, place: Span, reading: Callable[[], R]) -> R | Diagnos
     except ExceededError as error:
         if inner:  # the caller that set the budget reports it
             raise
-        return exceeded(error, place)
+        return exceeded(error, span)
     except MemoryError:
-        return exceeded(ExceededError("more memory than there is"), place)
+        return exceeded(ExceededError("more memory than there is"), span)
 
 
-def exceeded(error: ExceededError, place: Span | None = None) -> Diagnostic:
+def exceeded(error: ExceededError, span: Span | None = None) -> Diagnostic:
     """F930 for an exceeded limit."""
     return Diagnostic(
         Code.TOO_COSTLY,
         f"reading it takes {error}, far more than input of its size needs",
-        place,
+        span,
         help="the input is malicious or damaged; if it is sound, split it",
     )
 

@@ -142,7 +142,7 @@ def truths(column: Column, ticks: int) -> "list[Truth]":
     true, unknown = (f"{bits:0{ticks}b}"[::-1][:ticks] for bits in column)
     if not column.unknown:
         return [bit == "1" for bit in true]
-    return [None if doubt == "1" else bit == "1" for bit, doubt in zip(true, unknown)]
+    return [None if no_bit == "1" else bit == "1" for bit, no_bit in zip(true, unknown)]
 
 
 def rows_of(columns: "Sequence[Column]", ticks: int) -> "Iterator[tuple[Truth, ...]]":

@@ -36,15 +36,15 @@ class Listing(typing.Sequence[T]):
         return self._items() if self._tuple is None else iter(self._tuple)
 
     @overload
-    def __getitem__(self, place: int) -> T: ...
+    def __getitem__(self, index: int) -> T: ...
 
     @overload
-    def __getitem__(self, place: slice) -> "tuple[T, ...]": ...
+    def __getitem__(self, index: slice) -> "tuple[T, ...]": ...
 
-    def __getitem__(self, place: "int | slice") -> "T | tuple[T, ...]":
+    def __getitem__(self, index: "int | slice") -> "T | tuple[T, ...]":
         if self._tuple is None:
             self._tuple = tuple(self._items())
-        return self._tuple[place]
+        return self._tuple[index]
 
     def __eq__(self, other: object) -> bool:
         return tuple(self).__eq__(_as_tuple(other))

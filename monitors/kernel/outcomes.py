@@ -1,7 +1,7 @@
 """The outcome of each requirement over a whole trace, from the columns of the monitor's signals.
 
 Two engines give the columns: `evaluate` computes all ticks at once, `stepped` steps the monitor
-tick by tick. Both compute a certain column (`must`) and a possible one (`may`) of each signal.
+tick by tick. Both compute a certain and a possible column of each signal.
 
 The text below the imports is copied into every generated monitor exactly, names and comments
 included: a change of it changes all of them. Types of dataclasses are in parentheses: for others
@@ -25,7 +25,7 @@ from monitors.kernel.columns import (
     until,
 )
 from monitors.kernel.listings import Listing, run_list, tick_list
-from monitors.kernel.stepping import Monitor, Rail, Row, finite_verdict, literals_of
+from monitors.kernel.stepping import Approximation, Monitor, Row, finite_verdict, literals_of
 from monitors.kernel.verdicts import (
     INCONCLUSIVE,
     NO_DATA,
@@ -100,13 +100,15 @@ def evaluate(
     if ticks >= LARGE:
         reuse_memory()
     every = (1 << ticks) - 1
-    must = may = monitor.columns(every, **literals_of(monitor, columns, every, doubt=False))
+    certain = possible = monitor.columns(
+        every, **literals_of(monitor, columns, every, is_possible=False)
+    )
     if any(columns[name].unknown for name in monitor.PROPOSITIONS):
-        may = monitor.columns(every, **literals_of(monitor, columns, every, doubt=True))
-    same_length(monitor.REQUIREMENTS, must, may)
+        possible = monitor.columns(every, **literals_of(monitor, columns, every, is_possible=True))
+    same_length(monitor.REQUIREMENTS, certain, possible)
     return tuple(
-        _outcome(requirement, ticks, certain, possible, end)
-        for requirement, certain, possible in zip(monitor.REQUIREMENTS, must, may)
+        _outcome(requirement, ticks, low, high, end)
+        for requirement, low, high in zip(monitor.REQUIREMENTS, certain, possible)
     )
 
 
@@ -119,49 +121,49 @@ def stepped(
     """
     monitor.reset()
     rows = rows_of([columns[name] for name in monitor.PROPOSITIONS], ticks)
-    must, may = _Record(monitor), _Record(monitor)
+    certain, possible = _Record(monitor), _Record(monitor)
     while some := list(itertools.islice(rows, _TICKS)):
         if any(None in row for row in some):
             monitor._fork()
-        certain = _signal_codes(monitor.must, some)
-        must.append(certain)
-        if monitor.may is monitor.must:
-            may.append(certain)
+        codes = _signal_codes(monitor.certain, some)
+        certain.append(codes)
+        if monitor.possible is monitor.certain:
+            possible.append(codes)
         else:
-            may.append(_signal_codes(monitor.may, some))
+            possible.append(_signal_codes(monitor.possible, some))
             monitor._meet()
-    columns_of_both = tuple(must.columns()), tuple(may.columns())
+    columns_of_both = tuple(certain.columns()), tuple(possible.columns())
     same_length(monitor.REQUIREMENTS, *columns_of_both)
     return tuple(
-        _outcome(requirement, ticks, certain, possible, end)
-        for requirement, certain, possible in zip(monitor.REQUIREMENTS, *columns_of_both)
+        _outcome(requirement, ticks, low, high, end)
+        for requirement, low, high in zip(monitor.REQUIREMENTS, *columns_of_both)
     )
 
 
 _TICKS = 512
-"""Ticks over which the signals of one rail are gathered, and then those of the other."""
+"""Ticks over which the signals of one approximation are gathered, and then those of the other."""
 
 
-def _signal_codes(rail: Rail, rows: "Iterable[Row]") -> bytes:
+def _signal_codes(approximation: Approximation, rows: "Iterable[Row]") -> bytes:
     """The codes of all signals after each row, one row after the other."""
     values: list[bool] = []
     for row in rows:
-        rail.advance((row,))
-        for signals in rail.signals():
+        approximation.advance((row,))
+        for signals in approximation.signals():
             values += signals
     return bytes(values)
 
 
 class _Record:
-    """The signals of a rail, tick by tick, as columns that grow."""
+    """The signals of an approximation, tick by tick, as columns that grow."""
 
     def __init__(self, monitor: Monitor) -> None:
         self._tapes = [Tape() for _ in monitor.REQUIREMENTS for _ in Signals._fields]
 
     def append(self, codes: bytes) -> None:
         """Append the signals of further ticks, tick by tick."""
-        for place, tape in enumerate(self._tapes):
-            tape.append(codes[place :: len(self._tapes)])
+        for index, tape in enumerate(self._tapes):
+            tape.append(codes[index :: len(self._tapes)])
 
     def columns(self) -> "Iterator[Signals[int]]":
         """The signals of each requirement."""
@@ -170,34 +172,41 @@ class _Record:
 
 
 def _outcome(
-    requirement: Requirement, ticks: int, must: "Signals[int]", may: "Signals[int]", end: Verdict
+    requirement: Requirement,
+    ticks: int,
+    certain: "Signals[int]",
+    possible: "Signals[int]",
+    end: Verdict,
 ) -> Outcome:
     last = ticks - 1
     violated, perhaps = (
-        must.violation | must.violation_inevitable,
-        may.violation | may.violation_inevitable,
+        certain.violation | certain.violation_inevitable,
+        possible.violation | possible.violation_inevitable,
     )
     unknown = perhaps ^ violated
     verdict = NO_DATA
     finite: Truth = None
     if ticks:
-        pending = truth(_at(must.obligation_pending, last), _at(may.obligation_pending, last))
-        triggered = truth(must.trigger != 0, may.trigger != 0)
+        pending = truth(
+            _at(certain.obligation_pending, last), _at(possible.obligation_pending, last)
+        )
+        triggered = truth(certain.trigger != 0, possible.trigger != 0)
         verdict = at_end(truth(violated != 0, perhaps != 0), pending, triggered)
-        broken = truth(must.violation != 0, may.violation != 0)
+        broken = truth(certain.violation != 0, possible.violation != 0)
         finite = finite_verdict(
-            broken, truth(_at(must.violated_if_ended, last), _at(may.violated_if_ended, last))
+            broken,
+            truth(_at(certain.violated_if_ended, last), _at(possible.violated_if_ended, last)),
         )
     if end == VIOLATED and verdict == INCONCLUSIVE:
         verdict, violated = VIOLATED, 1 << last
     demands = _Demands(
         ticks,
         requirement.deadline_ticks,
-        must.trigger,
-        must.answer,
-        may.answer,
-        must.obligation_pending,
-        may.obligation_pending,
+        certain.trigger,
+        certain.answer,
+        possible.answer,
+        certain.obligation_pending,
+        possible.obligation_pending,
     )
     return Outcome(
         requirement=requirement.id,
@@ -207,7 +216,7 @@ def _outcome(
         first_violation=first_of(violated),
         violations=run_list(violated),
         unknown=run_list(unknown),
-        triggers=tick_list(must.trigger),
+        triggers=tick_list(certain.trigger),
         answers=Listing(lambda: demands.answered, demands.answers),
         open=Listing(lambda: demands.open, demands.deadlines),
         uncertain=Listing(lambda: demands.uncertain, lambda: ticks_of(demands.uncertain)),

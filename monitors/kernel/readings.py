@@ -83,14 +83,14 @@ def _single(fraction: Fraction, double: float) -> float:
         return double
     if not isfinite(double):
         return double
-    place = bits if bits >= 0 else -(bits & (1 << 31) - 1)
-    around = [value for at in (place, place - 1, place + 1) if isfinite(value := _float32(at))]
+    index = bits if bits >= 0 else -(bits & (1 << 31) - 1)
+    around = [value for at in (index, index - 1, index + 1) if isfinite(value := _float32(at))]
     return Single(min(around, key=lambda value: abs(Fraction(value) - fraction)))
 
 
-def _float32(place: int) -> float:
-    """The 32-bit float at a place in their order; zero is at 0."""
-    bits = place if place >= 0 else -place | 1 << 31
+def _float32(index: int) -> float:
+    """The 32-bit float at an index in their order; zero is at 0."""
+    bits = index if index >= 0 else -index | 1 << 31
     (value,) = struct.unpack("<f", struct.pack("<I", bits))
     return float(value)
 

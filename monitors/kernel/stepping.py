@@ -1,7 +1,7 @@
-"""The base class of generated monitors: two rails, stepped tick by tick.
+"""The base class of generated monitors: two approximations, stepped tick by tick.
 
-A rail is generated code that computes two-valued signals. A monitor has two instances: one computes
-certain values (`must`, an unknown counts as false), the other possible values (`may`, an unknown
+An approximation is generated code that computes two-valued signals. A monitor has two instances:
+one computes what is certain (an unknown counts as false), the other what is possible (an unknown
 counts as true). This is correct because every operator is monotone in the propositions and in their
 negations. As long as no value was unknown, one instance serves for both. Source: Kleene,
 Introduction to Metamathematics, 1952, section 64 (strong three-valued logic).
@@ -34,7 +34,7 @@ A = TypeVar("A")
 
 
 class Marks(NamedTuple):
-    """Ticks that a rail stores for one requirement; -1: none."""
+    """Ticks that an approximation stores for one requirement; -1: none."""
 
     broken: int
     """The first tick at which an obligation was violated."""
@@ -52,17 +52,17 @@ class Marks(NamedTuple):
         return min(ticks, default=-1)
 
 
-class Rail(Protocol):
-    """A generated rail: straight-line code, its state in slots."""
+class Approximation(Protocol):
+    """A generated approximation: straight-line code, its state in slots."""
 
     __slots__: "tuple[str, ...]"
     CELLS: ClassVar["tuple[str, ...]"]
     """The slots on which later signals depend; the others only store ticks."""
-    doubt: bool
+    is_possible: bool
     tick: int
 
-    def __init__(self, doubt: bool = False) -> None:
-        """Start before the first tick; unknowns count as `doubt`."""
+    def __init__(self, is_possible: bool = False) -> None:
+        """Start before the first tick; an unknown counts as true if `is_possible`."""
 
     def advance(self, rows: "Iterable[Sequence[Any]]") -> bool:
         """Step over all rows; whether all their values were known."""
@@ -74,22 +74,22 @@ class Rail(Protocol):
         """The stored ticks of each requirement."""
 
 
-class _Run:
-    """Ticks without a gap at which `right` of a window held, and the run after it."""
+class _Interval:
+    """Ticks without a gap at which `right` of a window held, and the interval after it."""
 
     __slots__ = ("end", "next", "start")
 
     def __init__(self, start: int, end: int) -> None:
         self.start, self.end = start, end
-        self.next: _Run | None = None
+        self.next: _Interval | None = None
 
 
 class Window:
-    """`left S[lo,hi] right` in ticks; memory: the runs of `right` inside of the window.
+    """`left S[lo,hi] right` in ticks; memory: the intervals of `right` inside of the window.
 
-    Copies share the runs that have ended, so a copy costs the same for any number of them: they are
-    linked from the oldest to the youngest, a window goes no further than its own last one, and what
-    a fork adds branches off. The run that may still grow is `start` and `end`.
+    Copies share the intervals that have ended, so a copy costs the same for any number of them:
+    they are linked from the oldest to the youngest, a window goes no further than its own last one,
+    and what a fork adds branches off. The interval that may still grow is `start` and `end`.
     """
 
     __slots__ = ("branch", "end", "first", "hi", "last", "lo", "now", "start", "turn")
@@ -100,12 +100,12 @@ class Window:
         self._clear()
 
     def _clear(self) -> None:
-        """No run."""
+        """No interval."""
         self.start = self.end = _NONE
-        self.first: _Run | None = None
-        self.last: _Run | None = None
-        self.turn: _Run | None = None
-        self.branch: _Run | None = None
+        self.first: _Interval | None = None
+        self.last: _Interval | None = None
+        self.turn: _Interval | None = None
+        self.branch: _Interval | None = None
 
     def step(self, left: bool, right: bool) -> bool:
         """Whether right held `lo..hi` ticks ago, and left ever since."""
@@ -116,7 +116,7 @@ class Window:
         if right:
             if self.end != now - 1:
                 if self.end != _NONE:
-                    self._add(_Run(self.start, self.end))
+                    self._add(_Interval(self.start, self.end))
                 self.start = now
             self.end = now
         while self.first is not None and self.first.end < now - self.hi:
@@ -127,26 +127,26 @@ class Window:
             self.start = self.end = _NONE
         return 0 <= self.start <= now - self.lo
 
-    def _add(self, run: _Run) -> None:
-        """The run has ended."""
+    def _add(self, interval: _Interval) -> None:
+        """The interval has ended."""
         if self.last is None:
-            self.first = run
+            self.first = interval
         elif self.last is self.turn:
-            self.branch = run
+            self.branch = interval
         else:
-            self.last.next = run
-        self.last = run
+            self.last.next = interval
+        self.last = interval
 
-    def _after(self, run: _Run) -> "_Run | None":
-        if run is self.last:
+    def _after(self, interval: _Interval) -> "_Interval | None":
+        if interval is self.last:
             return None
-        return self.branch if run is self.turn else run.next
+        return self.branch if interval is self.turn else interval.next
 
-    def _drop(self, oldest: _Run) -> None:
+    def _drop(self, oldest: _Interval) -> None:
         self.first = self._after(oldest)
         if self.first is None:
             self.last = None
-        if oldest is self.turn:  # The other window needs the runs after it.
+        if oldest is self.turn:  # The other window needs the intervals after it.
             self.turn = self.branch = None
 
     def copy(self) -> "Window":
@@ -163,21 +163,21 @@ class Window:
         other.turn = self.last
         return other
 
-    def _runs(self) -> "Iterator[tuple[int, int]]":
+    def _intervals(self) -> "Iterator[tuple[int, int]]":
         """The oldest first."""
-        run = self.first
-        while run is not None:
-            yield run.start, run.end
-            run = self._after(run)
+        interval = self.first
+        while interval is not None:
+            yield interval.start, interval.end
+            interval = self._after(interval)
         if self.end != _NONE:
             yield self.start, self.end
 
     def state(self) -> "tuple[tuple[int, int], ...]":
-        """The runs, each as ages (oldest, youngest); ages above `hi` are all one."""
-        return tuple((min(self.now - a, self.hi), self.now - b) for a, b in self._runs())
+        """The intervals, each as ages (oldest, youngest); ages above `hi` are all one."""
+        return tuple((min(self.now - a, self.hi), self.now - b) for a, b in self._intervals())
 
     def is_like(self, other: "Window") -> bool:
-        """Whether two windows with equal clocks have equal states; shared runs are skipped."""
+        """Whether two windows with equal clocks have equal states; shared intervals are skipped."""
         mine, theirs, shared = self.first, other.first, other.turn
         youngest = (self.start, self.end), (other.start, other.end)
         if mine is None or theirs is None:
@@ -192,7 +192,7 @@ class Window:
         return mine is theirs is None and youngest[0] == youngest[1]
 
     def _same(self, one: "tuple[int, int]", other: "tuple[int, int]") -> bool:
-        """Whether two runs are equal within the window."""
+        """Whether two intervals are equal within the window."""
         reach = self.now - self.hi
         return one[1] == other[1] and max(one[0], reach) == max(other[0], reach)
 
@@ -202,7 +202,7 @@ class Window:
         self.now = self.hi
         for oldest, youngest in state:
             if self.end != _NONE:
-                self._add(_Run(self.start, self.end))
+                self._add(_Interval(self.start, self.end))
             self.start, self.end = self.now - oldest, self.now - youngest
 
 
@@ -210,7 +210,7 @@ _NONE = -2
 """No tick, and none before one."""
 
 
-class Standing(NamedTuple):
+class RequirementStatus(NamedTuple):
     """The verdict on a requirement if the trace ended now, and its reasons."""
 
     requirement: str
@@ -230,18 +230,18 @@ class Standing(NamedTuple):
     @property
     def owed(self) -> Truth:
         """The former name of `obligation_pending`; deprecated."""
-        _renamed("owed", "obligation_pending")
+        renamed("owed", "obligation_pending")
         return self.obligation_pending
 
 
-def _renamed(old: str, new: str) -> None:
+def renamed(old: str, new: str) -> None:
     """Warn the caller of a name that the next version does not have any more."""
     warnings.warn(f"`{old}` is now `{new}`", DeprecationWarning, stacklevel=3)
 
 
 _PIECE, _FEW, _SOON = 4096, 64, 64
 """Rows that are stepped at once; rows in which it is cheaper to look for unknowns than to copy;
-ticks after which two rails are compared first."""
+ticks after which two approximations are compared first."""
 
 
 class Monitor:
@@ -254,7 +254,7 @@ class Monitor:
     """Proposition -> its parameter of `step`."""
     LITERALS: ClassVar["tuple[tuple[str, str, bool], ...]"]
     """Each parameter of `columns`, its proposition, and False if it is negated."""
-    RAIL: ClassVar["type[Rail]"]
+    APPROXIMATION: ClassVar["type[Approximation]"]
     verdicts: "Callable[..., tuple[Verdict, ...]]"
     """The LTL3 verdict on each requirement: satisfied, violated or pending."""
     columns: "Callable[..., tuple[Signals[int], ...]]"
@@ -267,19 +267,19 @@ class Monitor:
 
     def reset(self) -> None:
         """Forget everything: the next step is tick 0."""
-        self.must = self.may = self.RAIL()
+        self.certain = self.possible = self.APPROXIMATION()
 
     @property
     def tick(self) -> int:
         """The last tick; -1 before the first."""
-        return self.must.tick
+        return self.certain.tick
 
     def state(self) -> "dict[str, Any]":
         """The whole memory, as plain values that JSON can hold."""
         content = {
             "program": self.PROGRAM,
-            "must": _saved(self.must),
-            "may": None if self._is_one() else _saved(self.may),
+            "certain": _saved(self.certain),
+            "possible": None if self._is_one() else _saved(self.possible),
         }
         return {**content, "sha256": _digest(content)}
 
@@ -295,37 +295,49 @@ class Monitor:
             raise ValueError("the state is of another monitor, or is none")
         if digest != _digest(content):
             raise ValueError("the state was changed after it was saved")
-        must, may = self.RAIL(), self.RAIL(doubt=True)
-        _restored(must, content["must"])
-        if content["may"] is not None:
-            _restored(may, content["may"])
-        self.must = self.may = must
-        if content["may"] is not None:
-            self._part(may)
+        certain, possible = self.APPROXIMATION(), self.APPROXIMATION(is_possible=True)
+        _restored(certain, content["certain"])
+        if content["possible"] is not None:
+            _restored(possible, content["possible"])
+        self.certain = self.possible = certain
+        if content["possible"] is not None:
+            self._part(possible)
 
-    def standings(self) -> "tuple[Standing, ...]":
-        """The standing of each requirement."""
+    def statuses(self) -> "tuple[RequirementStatus, ...]":
+        """The status of each requirement."""
         if self.tick < 0:
             nothing = (Verdict.NO_DATA, None, None, None, None, None)
-            return tuple(Standing(r.id, *nothing) for r in self.REQUIREMENTS)
-        marks = self.must.marks(), self.may.marks()
-        signals = self.must.signals(), self.may.signals()
-        return tuple(map(_standing, self.REQUIREMENTS, *marks, *signals))
+            return tuple(RequirementStatus(r.id, *nothing) for r in self.REQUIREMENTS)
+        marks = self.certain.marks(), self.possible.marks()
+        signals = self.certain.signals(), self.possible.signals()
+        return tuple(map(_status, self.REQUIREMENTS, *marks, *signals))
 
-    def standings_after(
+    def standings(self) -> "tuple[RequirementStatus, ...]":
+        """The former name of `statuses`; deprecated."""
+        renamed("standings", "statuses")
+        return self.statuses()
+
+    def statuses_after(
         self, rows: "Iterable[Row | Mapping[str, Truth]]"
-    ) -> "tuple[Standing, ...]":
-        """The standings after further rows, without stepping the monitor.
+    ) -> "tuple[RequirementStatus, ...]":
+        """The statuses after further rows, without stepping the monitor.
 
         Raises:
             KeyError, TypeError, ValueError: as `advance` does.
         """
-        return self._after(rows, self.standings)
+        return self._after(rows, self.statuses)
+
+    def standings_after(
+        self, rows: "Iterable[Row | Mapping[str, Truth]]"
+    ) -> "tuple[RequirementStatus, ...]":
+        """The former name of `statuses_after`; deprecated."""
+        renamed("standings_after", "statuses_after")
+        return self.statuses_after(rows)
 
     def obligation_pending_after(
         self, rows: "Iterable[Row | Mapping[str, Truth]]"
     ) -> "tuple[Truth, ...]":
-        """The `obligation_pending` of each of `standings_after(rows)`, but cheaper.
+        """The `obligation_pending` of each of `statuses_after(rows)`, but cheaper.
 
         Raises:
             KeyError, TypeError, ValueError: as `advance` does.
@@ -334,17 +346,17 @@ class Monitor:
 
     def owed_after(self, rows: "Iterable[Row | Mapping[str, Truth]]") -> "tuple[Truth, ...]":
         """The former name of `obligation_pending_after`; deprecated."""
-        _renamed("owed_after", "obligation_pending_after")
+        renamed("owed_after", "obligation_pending_after")
         return self.obligation_pending_after(rows)
 
     def _obligation_pending(self) -> "tuple[Truth, ...]":
         if self.tick < 0:
             return (None,) * len(self.REQUIREMENTS)
-        return tuple(map(_obligation_pending, self.must.signals(), self.may.signals()))
+        return tuple(map(_obligation_pending, self.certain.signals(), self.possible.signals()))
 
     def _after(self, rows: "Iterable[Row | Mapping[str, Truth]]", read: "Callable[[], A]") -> A:
         kept = dict(vars(self))
-        self.must, self.may = self._copies()
+        self.certain, self.possible = self._copies()
         try:
             self._advance(self._in_order([*rows]))
             return read()
@@ -352,49 +364,49 @@ class Monitor:
             vars(self).update(kept)
 
     def _fork(self) -> None:
-        """Make a separate rail for possible values."""
-        if self.may is self.must:
-            self._part(_forked(self.must))
+        """Make a separate approximation for possible values."""
+        if self.possible is self.certain:
+            self._part(_forked(self.certain))
 
     def _step(self, row: Row) -> None:
-        """Step both rails, or one as long as all is known."""
-        if self.may is self.must and None in row:
+        """Step both approximations, or one as long as all is known."""
+        if self.possible is self.certain and None in row:
             self._fork()
-        must, may = self.must, self.may
-        must.advance((row,))
-        if may is not must:
-            may.advance((row,))
+        certain, possible = self.certain, self.possible
+        certain.advance((row,))
+        if possible is not certain:
+            possible.advance((row,))
             self._meet()
 
-    def _part(self, may: Rail) -> None:
-        self.may = may
+    def _part(self, possible: Approximation) -> None:
+        self.possible = possible
         self._apart = self.tick
         self._due = self.tick + _SOON
 
     def _meet(self) -> None:
-        """Use one rail again if both have equal states; checked less and less often."""
+        """Use one approximation again if both have equal states; checked less and less often."""
         tick = self.tick
         if tick < self._due:
             return
         if self._is_one():
-            self.may = self.must
+            self.possible = self.certain
         self._due = tick + max(_SOON, tick - self._apart)
 
     def _is_one(self) -> bool:
-        """Whether both rails have equal states; windows are compared last."""
-        if self.may is self.must:
+        """Whether both approximations have equal states; windows are compared last."""
+        if self.possible is self.certain:
             return True
         windows = []
-        for name in self.RAIL.__slots__:
-            must, may = getattr(self.must, name), getattr(self.may, name)
-            if isinstance(must, Window):
-                windows.append((must, may))
-            elif must != may and name != "doubt":
+        for name in self.APPROXIMATION.__slots__:
+            certain, possible = getattr(self.certain, name), getattr(self.possible, name)
+            if isinstance(certain, Window):
+                windows.append((certain, possible))
+            elif certain != possible and name != "is_possible":
                 return False
-        return all(must.is_like(may) for must, may in windows)
+        return all(certain.is_like(possible) for certain, possible in windows)
 
     def advance(self, rows: "Iterable[Row | Mapping[str, Truth]]") -> None:
-        """Step every row, in pieces of some thousand: one rail after the other.
+        """Step every row, in pieces of some thousand: one approximation after the other.
 
         An exception leaves the monitor at the end of the last whole piece.
 
@@ -406,34 +418,34 @@ class Monitor:
         waiting = iter(rows)
         while piece := list(itertools.islice(waiting, _PIECE)):
             block = self._in_order(piece)
-            before = (self.must, self.may) if len(block) == 1 else self._copies()
+            before = (self.certain, self.possible) if len(block) == 1 else self._copies()
             try:
                 self._advance(block)
-            except BaseException:  # Both rails must stay at the same tick.
-                self.must, self.may = before
+            except BaseException:  # Both approximations must stay at the same tick.
+                self.certain, self.possible = before
                 raise
 
     def _advance(self, block: "list[Row]") -> None:
-        """Step both rails, or one as long as all is known."""
-        if self.may is not self.must:
-            self.must.advance(block)
-            self.may.advance(block)
+        """Step both approximations, or one as long as all is known."""
+        if self.possible is not self.certain:
+            self.certain.advance(block)
+            self.possible.advance(block)
             self._meet()
         elif len(block) < _FEW:
             if any(None in row for row in block):
                 self._fork()
-                self.may.advance(block)
-            self.must.advance(block)
+                self.possible.advance(block)
+            self.certain.advance(block)
         else:
-            before = _forked(self.must)
-            if not self.must.advance(block):
+            before = _forked(self.certain)
+            if not self.certain.advance(block):
                 self._part(before)
                 before.advance(block)
 
-    def _copies(self) -> "tuple[Rail, Rail]":
-        """Both rails as they are now."""
-        must = _copied(self.must)
-        return must, must if self.may is self.must else _copied(self.may)
+    def _copies(self) -> "tuple[Approximation, Approximation]":
+        """Both approximations as they are now."""
+        certain = _copied(self.certain)
+        return certain, certain if self.possible is self.certain else _copied(self.possible)
 
     def _in_order(self, rows: "list[Any]") -> "list[Row]":
         """Rows by name as rows in the order of `PROPOSITIONS`."""
@@ -477,7 +489,7 @@ def rows_in_order(
     Raises:
         ValueError: `names` is not a permutation of `order`.
     """
-    places = {name: place for place, name in enumerate(names)}
+    places = {name: index for index, name in enumerate(names)}
     missing, unknown = {*order} - places.keys(), places.keys() - {*order}
     for wrong, why in ((missing, "is missing"), (unknown, "is no name of this monitor")):
         if wrong:
@@ -504,28 +516,28 @@ def _picked(keys: "Sequence[Any]") -> "Callable[[Any], tuple[Any, ...]]":
     return itemgetter(*keys)
 
 
-def _standing(
+def _status(
     requirement: Requirement,
-    must: Marks,
-    may: Marks,
+    certain_marks: Marks,
+    possible_marks: Marks,
     certain: "Signals[bool]",
     possible: "Signals[bool]",
-) -> Standing:
-    broken = truth(must.broken >= 0, may.broken >= 0)
-    violated = truth(must.violated >= 0, may.violated >= 0)
-    opened = must.open if must.open >= 0 else None
+) -> RequirementStatus:
+    broken = truth(certain_marks.broken >= 0, possible_marks.broken >= 0)
+    violated = truth(certain_marks.violated >= 0, possible_marks.violated >= 0)
+    opened = certain_marks.open if certain_marks.open >= 0 else None
     deadline = None
     if opened is not None and requirement.deadline_ticks is not None:
         deadline = opened + requirement.deadline_ticks
-    return Standing(
+    return RequirementStatus(
         requirement.id,
         at_end(
             violated,
             truth(certain.obligation_pending, possible.obligation_pending),
-            truth(must.last >= 0, may.last >= 0),
+            truth(certain_marks.last >= 0, possible_marks.last >= 0),
         ),
         finite_verdict(broken, truth(certain.violated_if_ended, possible.violated_if_ended)),
-        must.violated if must.violated >= 0 else None,
+        certain_marks.violated if certain_marks.violated >= 0 else None,
         opened,
         deadline,
         _obligation_pending(certain, possible),
@@ -547,38 +559,43 @@ def finite_verdict(broken: Truth, violated_if_ended: Truth) -> Truth:
 
 
 def literals_of(
-    monitor: "Monitor | type[Monitor]", columns: "Mapping[str, Column]", every: int, doubt: bool
+    monitor: "Monitor | type[Monitor]",
+    columns: "Mapping[str, Column]",
+    every: int,
+    is_possible: bool,
 ) -> "dict[str, int]":
-    """The columns of the literals on one rail."""
-    found = {}
+    """The columns of the literals on one approximation."""
+    literals = {}
     for name, proposition, positive in monitor.LITERALS:
         true, unknown = columns[proposition]
         sure = true if positive else every ^ (true | unknown)
-        found[name] = sure | unknown if doubt else sure
-    return found
+        literals[name] = sure | unknown if is_possible else sure
+    return literals
 
 
-def _copied(rail: Rail) -> Rail:
-    """A rail in the same state; only one of both can be stepped further."""
-    return _with_windows(rail, rail.doubt, Window.copy)
+def _copied(approximation: Approximation) -> Approximation:
+    """An approximation in the same state; only one of both can be stepped further."""
+    return _with_windows(approximation, approximation.is_possible, Window.copy)
 
 
-def _forked(rail: Rail) -> Rail:
-    """A rail in the same state, on which an unknown counts as true; both can be stepped."""
-    return _with_windows(rail, True, Window.fork)
+def _forked(approximation: Approximation) -> Approximation:
+    """The possible approximation, in the state of this one; both can be stepped."""
+    return _with_windows(approximation, True, Window.fork)
 
 
-def _with_windows(rail: Rail, doubt: bool, made: "Callable[[Window], Window]") -> Rail:
-    copy = type(rail)(doubt=doubt)
-    for name in rail.__slots__:
-        if name != "doubt":
-            value = getattr(rail, name)
+def _with_windows(
+    approximation: Approximation, is_possible: bool, made: "Callable[[Window], Window]"
+) -> Approximation:
+    copy = type(approximation)(is_possible=is_possible)
+    for name in approximation.__slots__:
+        if name != "is_possible":
+            value = getattr(approximation, name)
             setattr(copy, name, made(value) if isinstance(value, Window) else value)
     return copy
 
 
-def _saved(rail: Rail) -> "dict[str, Any]":
-    values = {name: getattr(rail, name) for name in rail.__slots__}
+def _saved(approximation: Approximation) -> "dict[str, Any]":
+    values = {name: getattr(approximation, name) for name in approximation.__slots__}
     return {
         name: value.state() if isinstance(value, Window) else value
         for name, value in values.items()
@@ -594,11 +611,11 @@ def _digest(content: "Mapping[str, Any]") -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def _restored(rail: Rail, state: "Mapping[str, Any]") -> None:
-    """Put a saved state into a rail; its digest has shown that nothing is missing."""
+def _restored(approximation: Approximation, state: "Mapping[str, Any]") -> None:
+    """Put a saved state into an approximation; its digest has shown that nothing is missing."""
     for name, value in state.items():
-        there = getattr(rail, name)
+        there = getattr(approximation, name)
         if isinstance(there, Window):
             there.restore(value)
         else:
-            setattr(rail, name, tuple(value) if isinstance(value, list) else value)
+            setattr(approximation, name, tuple(value) if isinstance(value, list) else value)

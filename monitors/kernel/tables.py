@@ -76,21 +76,21 @@ def _in_order(
 ) -> "Iterator[tuple[str, dict[str, Any]]]":
     """The rows, after a check that a column `tick` increases by one."""
     has_tick: bool | None = None
-    for place, row in rows:
+    for location, row in rows:
         if "tick" not in names:
             if has_tick not in (None, "tick" in row):
-                raise InputError(f"{place}: some rows have a `tick` and some have none")
+                raise InputError(f"{location}: some rows have a `tick` and some have none")
             has_tick = "tick" in row
             if has_tick:
-                tick = _next_tick(row["tick"], tick, place)
-        yield place, row
+                tick = _next_tick(row["tick"], tick, location)
+        yield location, row
 
 
 def _truths(
     rows: "Iterable[tuple[str, dict[str, Any]]]", names: "Sequence[str]"
 ) -> "Iterator[tuple[Truth, ...]]":
-    for place, row in rows:
-        yield tuple([_truth(row[name], name, place) for name in names])
+    for location, row in rows:
+        yield tuple([_truth(row[name], name, location) for name in names])
 
 
 def _header(
@@ -113,13 +113,13 @@ def _csv_rows(
     table = csv.reader(lines, strict=True)
     try:
         for values in table:
-            place = f"{source}:{before + table.line_num}"
+            location = f"{source}:{before + table.line_num}"
             if not values and len(header) > 1:
                 continue  # an empty line; in a table of one column it is an unknown value
             values = values or [""]
             if len(values) != len(header):
-                raise InputError(f"{place}: {len(values)} values for {len(header)} columns")
-            yield place, dict(zip(header, values))
+                raise InputError(f"{location}: {len(values)} values for {len(header)} columns")
+            yield location, dict(zip(header, values))
     except csv.Error as error:
         raise InputError(f"{source}:{before + table.line_num}: {error}") from None
 
@@ -141,24 +141,24 @@ def _json_rows(
 
 
 def _distinct(pairs: "list[tuple[str, Any]]") -> "dict[str, Any]":
-    found = dict(pairs)
-    if len(found) < len(pairs):
+    row = dict(pairs)
+    if len(row) < len(pairs):
         raise ValueError("a key comes twice")
-    return found
+    return row
 
 
 _JSON = json.JSONDecoder(object_pairs_hook=_distinct)
 
 
-def _check_columns(keys: "Iterable[str]", names: "Sequence[str]", place: str) -> None:
+def _check_columns(keys: "Iterable[str]", names: "Sequence[str]", location: str) -> None:
     columns = list(keys)
     for name in names:
         if name not in columns:
             listing = _short(", ".join(columns)) or "none"
-            raise InputError(f"{place}: there is no column `{name}`; there are {listing}")
+            raise InputError(f"{location}: there is no column `{name}`; there are {listing}")
     for name in (*names, "tick"):
         if columns.count(name) > 1:
-            raise InputError(f"{place}: there are two columns `{name}`")
+            raise InputError(f"{location}: there are two columns `{name}`")
 
 
 def _short(text: str) -> str:
@@ -169,33 +169,33 @@ def _short(text: str) -> str:
 _ROOM = 200
 
 
-def _truth(value: Any, name: str, place: str) -> Truth:
+def _truth(value: Any, name: str, location: str) -> Truth:
     if value is None or isinstance(value, bool):
         return value
     word = str(value).strip().lower()
     if word not in _WORDS:
         raise InputError(
-            f"{place}: column `{name}`: `{_short(str(value))}` is no truth value; "
+            f"{location}: column `{name}`: `{_short(str(value))}` is no truth value; "
             "write 0, 1, true, false, or nothing for unknown"
         )
     return _WORDS[word]
 
 
-def _next_tick(value: Any, before: "int | None", place: str) -> int:
+def _next_tick(value: Any, before: "int | None", location: str) -> int:
     text = str(value)
     if not _WHOLE.fullmatch(text):
-        raise InputError(f"{place}: column `tick`: `{_short(text)}` is no whole number")
+        raise InputError(f"{location}: column `tick`: `{_short(text)}` is no whole number")
     tick = int(text)
     if before is not None and tick != before + 1:
         fault = "goes back" if tick <= before else "leaves ticks out"
-        raise InputError(f"{place}: column `tick` {fault}: {before}, then {tick}")
+        raise InputError(f"{location}: column `tick` {fault}: {before}, then {tick}")
     return tick
 
 
 _WHOLE = re.compile(r"\s*-?[0-9]{1,18}\s*")
 
 
-# Whole pieces of CSV, where they leave no doubt ------------------------------------------------
+# Whole pieces of CSV, where they are unambiguous ----------------------------------------------
 
 _CHARACTERS, _MOST_CHARACTERS = 1 << 12, 1 << 22
 """Characters of a piece per column, and the largest number; a piece ends at the end of a line."""
@@ -215,7 +215,7 @@ def _csv_pieces(
 ) -> "Iterator[Piece]":
     """CSV below its header, which ends in that line.
 
-    Where a piece leaves a doubt it is read row by row, and so is all that follows: that is slower,
+    Where a piece is ambiguous it is read row by row, and so is all that follows: that is slower,
     and finds what is wrong, and where.
     """
     tick: int | None = None
@@ -238,7 +238,7 @@ def _block(
     """Whole lines of CSV, which follow the row with that tick.
 
     Raises:
-        csv.Error, KeyError, ValueError: there is a doubt.
+        csv.Error, KeyError, ValueError: the lines are ambiguous.
     """
     width, has_tick = len(header), "tick" in header and "tick" not in names
     codes = None if has_tick else _digits(part, width)
@@ -266,7 +266,7 @@ def _digits(part: str, width: int) -> "list[bytes] | None":
     if separators != (b"," * (width - 1) + b"\n") * rows or cells.strip(b"01"):
         return None
     codes = cells.translate(_CODES)
-    return [codes[place::width] for place in range(width)]
+    return [codes[index::width] for index in range(width)]
 
 
 _CODES = bytes.maketrans(b"01", b"\0\1")

@@ -24,33 +24,33 @@ def read_variables(
     Raises:
         InputError: a column is missing, a value is of another kind than its variable, ticks jump.
     """
-    for place, row in placed_rows(text, tuple(variables), source):
-        yield tuple(_value(row[name], name, each, place) for name, each in variables.items())
+    for location, row in placed_rows(text, tuple(variables), source):
+        yield tuple(_value(row[name], name, each, location) for name, each in variables.items())
 
 
-def _value(value: Any, name: str, variable: Variable, place: str) -> Value:
+def _value(value: Any, name: str, variable: Variable, location: str) -> Value:
     if variable.kind == "truth":
-        return _truth(value, name, place)
+        return _truth(value, name, location)
     if value is None or not (str(value).strip() or value in variable.words):
         return None
     if variable.kind == "word":
-        return _word(value, name, variable.words, place)
-    return _number(value, name, place)
+        return _word(value, name, variable.words, location)
+    return _number(value, name, location)
 
 
-def _word(value: Any, name: str, words: "tuple[str, ...]", place: str) -> str:
+def _word(value: Any, name: str, words: "tuple[str, ...]", location: str) -> str:
     text = str(value)
     if text not in words:  # spaces around a cell are none of it, unless they are of a word
         text = text.strip()
     if text not in words or not isinstance(value, str):
         raise InputError(
-            f"{place}: column `{name}`: `{_short(text)}` is none of its words; "
+            f"{location}: column `{name}`: `{_short(text)}` is none of its words; "
             f"write {', '.join(words)}, or nothing for unknown"
         )
     return text
 
 
-def _number(value: Any, name: str, place: str) -> "float | None":
+def _number(value: Any, name: str, location: str) -> "float | None":
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         return value
     text = str(value).strip()
@@ -58,7 +58,7 @@ def _number(value: Any, name: str, place: str) -> "float | None":
         return _OTHER_NUMBERS[text.lower()]
     if not _NUMBER.fullmatch(text):
         raise InputError(
-            f"{place}: column `{name}`: `{_short(text)}` is no number; "
+            f"{location}: column `{name}`: `{_short(text)}` is no number; "
             "write it as 17.5 or 1e-3, or nothing for unknown"
         )
     whole = text.lstrip("+-").isdigit() and len(text) <= _MOST_DIGITS

@@ -1,6 +1,6 @@
 """The base of a monitor whose sentences compare: it is stepped by variables.
 
-Its rails see the truth of comparisons, as every monitor's see that of propositions.
+Its approximations see the truth of comparisons, as every monitor's see that of propositions.
 """
 
 import itertools

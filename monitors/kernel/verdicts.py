@@ -93,9 +93,9 @@ def same_length(*parts: Sized) -> None:
         raise ValueError("there are more or fewer values than expected")
 
 
-def truth(must: bool, may: bool) -> Truth:
-    """The three-valued truth value of a certain (`must`) and a possible (`may`) value."""
-    return must if must == may else None
+def truth(certain: bool, possible: bool) -> Truth:
+    """The three-valued truth value of a certain (`certain`) and a possible (`possible`) value."""
+    return certain if certain == possible else None
 
 
 def at_end(broken: Truth, pending: Truth, triggered: Truth) -> Verdict:

@@ -68,8 +68,8 @@ def motion(message: Any) -> tuple[Pose, BodyVelocity]:
     """What an Odometry says."""
     pose = message.pose.pose
     yaw = 2 * math.atan2(pose.orientation.z, pose.orientation.w)
-    place = Pose(pose.position.x, pose.position.y, math.remainder(yaw, 2 * math.pi))
-    return place, velocity(message.twist.twist)
+    planar = Pose(pose.position.x, pose.position.y, math.remainder(yaw, 2 * math.pi))
+    return planar, velocity(message.twist.twist)
 
 
 def boolean(value: bool) -> "Msg":

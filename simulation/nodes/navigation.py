@@ -84,8 +84,8 @@ def plan(
     return None
 
 
-def _cell(place: Pose) -> Cell:
-    return int(place.x // RESOLUTION), int(place.y // RESOLUTION)
+def _cell(pose: Pose) -> Cell:
+    return int(pose.x // RESOLUTION), int(pose.y // RESOLUTION)
 
 
 def _way(before: dict[Cell, Cell], last: Cell) -> NDArray[np.float64]:

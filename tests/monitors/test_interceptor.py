@@ -65,7 +65,7 @@ def by_prose(history: list[Heard], options: Options) -> Velocity | None:
     stops = [m.requested for m in history if isinstance(m, StopHeard)]
     requested = any(stops) if options.latching else [False, *stops][-1]
     since = rings(history, StopHeard, STOP)
-    owed = since is not None and (since <= options.hold if now == RING else since < options.hold)
+    pending = since is not None and (since <= options.hold if now == RING else since < options.hold)
     silent = [
         timeout > 0 and (age is None or age >= timeout)
         for timeout, age in (
@@ -75,7 +75,7 @@ def by_prose(history: list[Heard], options: Options) -> Velocity | None:
         )
     ]
     commands = [m.command for m in history if isinstance(m, CommandHeard)]
-    passed = ZERO if requested or owed or any(silent) else [ZERO, *commands][-1]
+    passed = ZERO if requested or pending or any(silent) else [ZERO, *commands][-1]
     if options.event_driven:
         return passed if isinstance(now, CommandHeard) else None
     if now == STOP:

@@ -107,7 +107,7 @@ def test_the_robot_stands_until_each_topic_that_decides_has_begun(emitted: Any) 
     assert slow.levels() == {"sources": STALE, "SLOW": OK, "STOP": STALE}
 
 
-def test_it_stops_on_arrival_and_goes_on_once_nothing_is_owed(emitted: Any) -> None:
+def test_it_stops_on_arrival_and_goes_on_once_nothing_is_pending(emitted: Any) -> None:
     run = Run(emitted, "STOP")
     run.x(5.0)
     run.y(1.5)
@@ -180,7 +180,7 @@ def test_news_are_lines_of_a_watch(emitted: Any) -> None:
 @given(
     st.lists(st.tuples(st.sampled_from("xyi"), st.sampled_from([0.5, 1.5, 3.0, float("nan"), "?"])))
 )
-def test_it_stops_unless_owed_is_false_and_all_is_there(
+def test_it_stops_unless_pending_is_false_and_all_is_there(
     emitted: Any, steps: list[tuple[str, Any]]
 ) -> None:
     """By the demand of `OnlineEvaluator`, and by what came last of each topic."""
@@ -258,4 +258,4 @@ def test_the_ticks_before_a_jump_are_judged(emitted: Any) -> None:
     judging.arrive("/x", 10**9, 6 * 10**9, SimpleNamespace(data=3.0))
     assert judging.resets == 1
     assert before.tick == 9
-    assert str(before.standings()[0].verdict) == "violated"
+    assert str(before.statuses()[0].verdict) == "violated"

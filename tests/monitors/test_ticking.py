@@ -92,7 +92,7 @@ def monitors() -> list[Monitor]:
 
 
 def states(some: Sequence[Monitor]) -> list[object]:
-    return [(each.tick, each.standings()) for each in some]
+    return [(each.tick, each.statuses()) for each in some]
 
 
 @pytest.fixture(scope="module")

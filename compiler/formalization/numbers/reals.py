@@ -74,8 +74,8 @@ class Reals:
                 read[name] = terms.holds(part, True, lambda _: z3.BoolVal(True))
             except NoTermError:
                 beyond.add(name)
-        for place, (name, formula) in enumerate(read.items()):
-            self._flags[name] = z3.Bool(f"comparison {place}")
+        for index, (name, formula) in enumerate(read.items()):
+            self._flags[name] = z3.Bool(f"comparison {index}")
             self._solver.add(self._flags[name] == formula)
         self._solver.add([terms.domain(name) for name in terms.variables])
         self._variables = dict(terms.variables)

@@ -77,7 +77,7 @@ def exclusions(
 def _columns(relations: Sequence[Relation], words: Mapping[str, Sequence[str]]) -> Iterator[str]:
     """For each cell `1` or `0` for each comparison."""
     points, signs = _signs(relations, words)
-    places = {point: place for place, point in enumerate(points)}
+    places = {point: index for index, point in enumerate(points)}
     rows = {op: row * len(points) for row, op in enumerate(_TRUE)}
     chosen = itemgetter(*(rows[relation.op] + places[relation.right] for relation in relations))
     for cell_signs in signs:

@@ -192,9 +192,9 @@ PYTHON = _words(
     """
     False None True and as assert async await break class continue def del elif else except finally
     for from global if import in is lambda nonlocal not or pass raise return try while with yield
-    self every known doubt tick rows row rail must may first kept_first boolean Signals Marks
-    previous weak_previous once historically since released since_from since_between
-    released_between SATISFIED VIOLATED PENDING
+    self every known is_possible tick rows row approximation certain possible first kept_first
+    boolean Signals Marks previous weak_previous once historically since released since_from
+    since_between released_between SATISFIED VIOLATED PENDING
     """
 )
 """The Python Language Reference, 2.3.1; and names in our functions: their local variables and the

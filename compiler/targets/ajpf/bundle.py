@@ -295,9 +295,9 @@ def _binding(declarations: Declarations | None, name: str) -> dict[str, Any]:
     bound = declarations.propositions.get(name) if declarations else None
     if declarations is None or bound is None:
         return {}
-    place = bound.span.text.strip("\"'") if bound.span else ""
+    text = bound.span.text.strip("\"'") if bound.span else ""
     compared = list(_comparisons(declarations, bound.expression))
-    return {"expression": place, "comparisons": compared}
+    return {"expression": text, "comparisons": compared}
 
 
 def _comparisons(declarations: Declarations, expression: e.Expression) -> Iterator[dict[str, Any]]:

@@ -285,17 +285,17 @@ def remark(
     requirement: FormalizedRequirement, options: TargetOptions = DEFAULT
 ) -> Diagnostic | None:
     """F605, F606, F607: limits of AJPF's verdict on the property."""
-    place = requirement.sentence.timing_span or requirement.entry.wording
+    span = requirement.sentence.timing_span or requirement.entry.wording
     loss = weakened(requirement, options)
     if loss is not None:
-        return diagnostic("weakened_property", place, requirement=requirement.id, loss=loss)
+        return diagnostic("weakened_property", span, requirement=requirement.id, loss=loss)
     sentence = requirement.sentence
     scope = sentence.scope.kind if sentence.scope else None
     if not _begins_at_once(sentence.timing) or (scope is not None and scope.negates):
         return None
     if sentence.condition is None and scope in (None, s.ScopeKind.NOT_IN, s.ScopeKind.BEFORE):
-        return diagnostic("state_zero", place, requirement=requirement.id)
-    return diagnostic("no_time_to_react", place, requirement=requirement.id)
+        return diagnostic("state_zero", span, requirement=requirement.id)
+    return diagnostic("no_time_to_react", span, requirement=requirement.id)
 
 
 def text(requirement: FormalizedRequirement, options: TargetOptions = DEFAULT) -> str:

@@ -184,9 +184,9 @@ def tools() -> Tools:
     java, javac = shutil.which("java", path=path), shutil.which("javac", path=path)
     if java is None or javac is None:
         raise UnusableError("java and javac are needed (JDK 11): set JAVA_HOME")
-    place = Path(home).resolve()
-    libraries = class_path(place)
-    return Tools(java, java_version(java), javac, place, libraries)
+    folder = Path(home).resolve()
+    libraries = class_path(folder)
+    return Tools(java, java_version(java), javac, folder, libraries)
 
 
 def java_version(java: str) -> str:
@@ -219,7 +219,7 @@ def class_path(home: Path) -> str:
             f"there is no {ANTLR}.*.jar below {home / 'lib'}: MCAPL's parsers need ANTLR 4.13.2"
         )
     libraries.sort(key=lambda jar: not jar.name.startswith(ANTLR))
-    places = [place for place in (*compiled, *libraries) if place.exists()]
+    places = [path for path in (*compiled, *libraries) if path.exists()]
     return os.pathsep.join(map(str, places))
 
 
@@ -476,9 +476,9 @@ def commit(home: Path) -> str | None:
 
 def write(here: Path, content: Mapping[str, Any]) -> None:
     """Write a complete result, or none."""
-    place = here / "result.json.new"
-    place.write_text(f"{json.dumps(content, indent=2)}\n", encoding="utf-8")
-    place.replace(here / "result.json")
+    path = here / "result.json.new"
+    path.write_text(f"{json.dumps(content, indent=2)}\n", encoding="utf-8")
+    path.replace(here / "result.json")
 
 
 if __name__ == "__main__":

@@ -80,7 +80,7 @@ class Chart:
         places = tuple(self.inputs)
 
         def vectors(chosen_letters: Iterable[Letter]) -> list[tuple[bool, ...]]:
-            return sorted(tuple(letter[place] for place in places) for letter in chosen_letters)
+            return sorted(tuple(letter[index] for index in places) for letter in chosen_letters)
 
         terms = cover(vectors(chosen), vectors(set(self.letters) - chosen))
         return [{places[i]: value for i, value in term.items()} for term in terms]
@@ -147,7 +147,7 @@ def words(demanded: ObligationKind, template: Template, state: ReferenceState) -
     elif template.scope is not None:
         phrases.append(_PHASES[state.phase])
     if enforced:
-        idle = "waiting" if template.condition else "nothing more is owed"
+        idle = "waiting" if template.condition else "no obligation is pending"
         phrases.append(_counter_words(demanded, state.counted) if state.counted else idle)
     if state.held:
         phrases.append("condition was true")
@@ -176,11 +176,11 @@ def _counter_words(demanded: ObligationKind, count: int) -> str:
         case ObligationKind.FINALLY:
             return f"due at the end, {'held' if count < 0 else 'missing'} at this tick"
         case ObligationKind.ALWAYS:
-            return "owed for ever"
+            return "pending for ever"
         case ObligationKind.UNTIL:
-            return "owed until the stop condition"
+            return "pending until the stop condition"
         case ObligationKind.FOR:
-            return f"owed for {_ticks(count)} more"
+            return f"pending for {_ticks(count)} more"
         case ObligationKind.EVENTUALLY | ObligationKind.BEFORE:
             return "open"
         case ObligationKind.WITHIN:

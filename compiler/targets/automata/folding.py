@@ -16,7 +16,7 @@ from compiler.targets.automata.chart import START, Chart, chart, kind, words
 from fretish.classes.frozen import dataclass
 
 VIOLATED, SATISFIED = "violated", "satisfied"
-OPEN = ("open", "open twice", "owed")
+OPEN = ("open", "open twice", "pending")
 """The names of nodes that count."""
 
 
@@ -124,7 +124,7 @@ class _Folding:
         counts = sorted(k for index in members if (k := self._count(index)) is not None)
         if counts and not self.registers:  # one k stands for the ticks of all members
             word = 1 if self.scoped else 0
-            phrases[word] = "owed" if Trait.DOWN in self.traits else OPEN[state.counted < 0]
+            phrases[word] = "pending" if Trait.DOWN in self.traits else OPEN[state.counted < 0]
         return FoldedState(
             self.names[members[0]],
             tuple(phrases),

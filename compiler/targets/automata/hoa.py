@@ -112,9 +112,9 @@ class _Aliases:
 
     def of(self, inputs: Mapping[int, f.Formula]) -> Mapping[str, str]:
         """The text of each alias by its name, after the aliases that it uses."""
-        for place, part in inputs.items():
+        for index, part in inputs.items():
             text = self._text(part)
-            self._found[PLACES[place]] = text
+            self._found[PLACES[index]] = text
         return self._found
 
     def _text(self, formula: f.Formula) -> str:

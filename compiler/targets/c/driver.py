@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.program.program import Counter
-from compiler.program.rails import RequirementValues, Ring
+from compiler.program.stored_program import RequirementValues, Ring
 from compiler.targets.c.monitor import c_printer
 from compiler.targets.c.printer import CPrinter
 from fretish.classes.frozen import dataclass
@@ -54,7 +54,7 @@ def driver(name: str, base: str, requirements: Sequence[FormalizedRequirement]) 
         requirements: the requirements, in the order of outcomes.
     """
     printer = c_printer(name, requirements)
-    program, ranges = printer.rail, [*_ranges(printer)]
+    program, ranges = printer.program, [*_ranges(printer)]
     ends = {-1, 0, 1, *(end for cell in ranges for end in (cell.least, cell.most))}
     text = render(
         "c/driver.c.j2",
@@ -70,7 +70,7 @@ def driver(name: str, base: str, requirements: Sequence[FormalizedRequirement]) 
 
 
 def _ranges(printer: CPrinter) -> Iterator[_Range]:
-    for cell in printer.rail.cells:
+    for cell in printer.program.cells:
         if isinstance(cell, Counter):
             yield _Range(cell.name, cell.least, cell.most)
         elif isinstance(cell, Ring):

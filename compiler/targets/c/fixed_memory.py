@@ -8,7 +8,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.identifiers import legal_names
 from compiler.program.lowering import program
 from compiler.program.program import Counter
-from compiler.program.rails import Ring, StoredProgram, rail
+from compiler.program.stored_program import Ring, StoredProgram, stored_program
 from compiler.targets.comparison_names import comparison_names, in_words
 from compiler.targets.python.monitor import watched
 from compiler.targets.python.names import prefixes_of
@@ -23,7 +23,9 @@ _MOST_BITS = 2**23
 @with_recursion_limit
 def too_large(requirement: FormalizedRequirement, language: str) -> Diagnostic | None:
     """F601 if a counter or a ring needs too much memory."""
-    cells = rail(program({requirement.id: requirement.watch}), {requirement.id: "r"}).cells
+    cells = stored_program(
+        program({requirement.id: requirement.watch}), {requirement.id: "r"}
+    ).cells
     if any(isinstance(cell, Counter) and cell.most >= 2**31 for cell in cells):
         what, fix = "a bound of 2^31 ticks or more", "counters have 32 bits: choose a longer tick"
     elif any(isinstance(cell, Ring) and cell.length > _MOST_BITS for cell in cells):
@@ -34,7 +36,7 @@ def too_large(requirement: FormalizedRequirement, language: str) -> Diagnostic |
     return not_expressible(f"a monitor in {language}", requirement, what, fix)
 
 
-def rail_of(
+def monitor_program(
     requirements: Sequence[FormalizedRequirement], reserved: Container[str]
 ) -> StoredProgram:
     """The program of one monitor for all requirements.
@@ -45,7 +47,7 @@ def rail_of(
     """
     prefixes = prefixes_of([requirement.id for requirement in requirements])
     members = legal_names(prefixes, reserved, names=prefixes)
-    return rail(
+    return stored_program(
         program({requirement.id: requirement.watch for requirement in requirements}), members
     )
 

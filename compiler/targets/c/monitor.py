@@ -15,10 +15,10 @@ from compiler.files.artifact import Artifact
 from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.spelling.reserved_words import C_LIBRARY, C, ReservedWords
-from compiler.program.rails import Ring
+from compiler.program.stored_program import Ring
 from compiler.signals.functions import Functions, functions
 from compiler.targets.c import signals
-from compiler.targets.c.fixed_memory import input_names, inputs, rail_of, too_large
+from compiler.targets.c.fixed_memory import input_names, inputs, monitor_program, too_large
 from compiler.targets.c.printer import CPrinter
 from compiler.targets.python.monitor import description, refusal, remark
 from compiler.targets.python.names import module, prefixes_of
@@ -82,7 +82,7 @@ def interface(requirements: Sequence[FormalizedRequirement]) -> tuple[Interface,
         for name, base, requirement in _apart(requirements)
     ]
     return tuple(
-        Interface(name, base, printer.names, printer.rail.readings[0].prefix)
+        Interface(name, base, printer.names, printer.program.readings[0].prefix)
         for name, base, printer in every
     )
 
@@ -130,7 +130,9 @@ def joined_interface(requirements: Sequence[FormalizedRequirement]) -> JoinedInt
     sample_functions = functions(requirements, printer.names, signals.LANGUAGE, C)
     assert sample_functions is not None, "there are bindings"
     return JoinedInterface(
-        printer.names, tuple(reading.prefix for reading in printer.rail.readings), sample_functions
+        printer.names,
+        tuple(reading.prefix for reading in printer.program.readings),
+        sample_functions,
     )
 
 
@@ -142,7 +144,7 @@ def c_printer(name: str, requirements: Sequence[FormalizedRequirement]) -> CPrin
         requirements: requirements that are not refused.
     """
     reserved = _reserved(name)
-    return CPrinter.of(rail_of(requirements, reserved), input_names(requirements, reserved))
+    return CPrinter.of(monitor_program(requirements, reserved), input_names(requirements, reserved))
 
 
 def _reserved(name: str) -> ReservedWords:
@@ -156,7 +158,7 @@ def _values(printer: CPrinter) -> dict[str, Any]:
         "literals": [*printer.literals()],
         "rings": [
             {"name": cell.name, "words": -(-cell.length // 32)}
-            for cell in printer.rail.cells
+            for cell in printer.program.cells
             if isinstance(cell, Ring)
         ],
         "stages": printer.stages(),

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator
 from typing import assert_never
 
 from compiler.program.program import Counter, StoredFlag
-from compiler.program.rails import Cell, Deadline, Ring
 from compiler.program.statements import Statements
+from compiler.program.stored_program import Cell, Deadline, Ring
 from compiler.program.values import Constant, Literal, Value, Variable
 from fretish.classes.frozen import dataclass
 
@@ -23,23 +23,23 @@ class StructMember:
 
 
 class CPrinter(Statements):
-    """The syntax of C: `rail` points to the cells, `now` to the literals."""
+    """The syntax of C: `approximation` points to the cells, `now` to the literals."""
 
     __slots__ = ()
-    CELLS, LITERALS, LOCAL, IF = "rail->", "now->", "const bool", ("(", ")")
+    CELLS, LITERALS, LOCAL, IF = "approximation->", "now->", "const bool", ("(", ")")
 
     def members(self) -> tuple[StructMember, ...]:
         """The members, the widest first, so that there is no padding between them."""
         sizes = {Ring: 0, Counter: 1, StoredFlag: 2}
-        cells = sorted(self.rail.cells, key=lambda cell: sizes[type(cell)])
+        cells = sorted(self.program.cells, key=lambda cell: sizes[type(cell)])
         return tuple(member for cell in cells for member in _members(cell))
 
     @property
     def bytes(self) -> int:
         """The size of the struct, if a `bool` has one byte and alignment is at most 4."""
-        flags = sum(isinstance(cell, StoredFlag) for cell in self.rail.cells)
-        unused = -flags % 4 if flags < len(self.rail.cells) else 0
-        return sum(map(_bytes, self.rail.cells)) + unused or 1
+        flags = sum(isinstance(cell, StoredFlag) for cell in self.program.cells)
+        unused = -flags % 4 if flags < len(self.program.cells) else 0
+        return sum(map(_bytes, self.program.cells)) + unused or 1
 
     def negated(self, value: Value) -> str:
         """The negation, with parentheses around any operator."""
@@ -52,8 +52,8 @@ class CPrinter(Statements):
 
     def delay(self, name: str, ring: Ring, value: str) -> Iterator[str]:
         """Statements that read and overwrite one bit of a ring, and advance its position."""
-        at, word, bit = f"rail->{ring.name}_at", f"{name}_word", f"{name}_bit"
-        yield f"uint32_t *const {word} = &rail->{ring.name}[{at} / 32u];"
+        at, word, bit = f"approximation->{ring.name}_at", f"{name}_word", f"{name}_bit"
+        yield f"uint32_t *const {word} = &approximation->{ring.name}[{at} / 32u];"
         yield f"const uint32_t {bit} = UINT32_C(1) << ({at} % 32u);"
         yield f"const bool {name} = (*{word} & {bit}) != 0u;"
         yield f"*{word} = ({value}) ? (*{word} | {bit}) : (*{word} & ~{bit});"
@@ -66,7 +66,7 @@ class CPrinter(Statements):
         """
         if deadline is None:
             return "-1"
-        counter, ticks = f"rail->{deadline.counter}", deadline.deadline_ticks
+        counter, ticks = f"approximation->{deadline.counter}", deadline.deadline_ticks
         ahead = f"({counter} >= 0) & ({counter} <= {ticks})"
         return f"({self.grouped(is_open)} & {ahead}) ? ({ticks} - {counter}) : -1"
 

@@ -1,7 +1,7 @@
 """A monitor's program as JavaScript: one function that advances the state by a tick.
 
-Cells are properties of `rail`. A proposition `p` is `is_p` and its negation `not_p`; no other name
-begins so, and none is a key word.
+Cells are properties of `approximation`. A proposition `p` is `is_p` and its negation `not_p`; no
+other name begins so, and none is a key word.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ class JavaScriptPrinter:
             case Counter():
                 return str(cell.initial)
             case WindowMemory():
-                return "{ runs: [], first: 0 }"
+                return "{ intervals: [], first: 0 }"
             case _:
                 assert_never(cell)
 
@@ -93,17 +93,18 @@ class JavaScriptPrinter:
             case Assign(name, value):
                 yield self._assigned(name, self._value(value).text)
             case Shift(name, cell, value):
-                yield self._assigned(name, f"rail.{cell}")
-                yield f"rail.{cell} = {self._value(value).text};"
+                yield self._assigned(name, f"approximation.{cell}")
+                yield f"approximation.{cell} = {self._value(value).text};"
             case SetCounter(counter, number):
-                yield f"rail.{counter} = {number};"
+                yield f"approximation.{counter} = {number};"
             case Advance(counter, most):
-                yield f"rail.{counter} = rail.{counter} < {most} ? rail.{counter} + 1 : {most};"
+                cell = f"approximation.{counter}"
+                yield f"{cell} = {cell} < {most} ? {cell} + 1 : {most};"
             case Slide(name, window, guard, witness, negated):
                 sides = f"{self._value(guard).text}, {self._value(witness).text}"
                 kept = self.cells[window]
                 assert isinstance(kept, WindowMemory)
-                held = f"slide(rail.{window}, tick, {kept.lo}, {kept.hi}, {sides})"
+                held = f"slide(approximation.{window}, tick, {kept.lo}, {kept.hi}, {sides})"
                 yield self._assigned(name, f"{'!' if negated else ''}{held}")
             case Choose(branches, otherwise):
                 for condition, then in branches:
@@ -120,7 +121,7 @@ class JavaScriptPrinter:
         return f"{place} = {value};" if place != name else f"const {name} = {value};"
 
     def _place(self, name: str) -> str:
-        return f"rail.{name}" if name in self.cells else name
+        return f"approximation.{name}" if name in self.cells else name
 
     def _literal(self, literal: Literal) -> str:
         return f"{'is' if literal.positive else 'not'}_{self.names[literal.proposition]}"
@@ -134,7 +135,9 @@ class JavaScriptPrinter:
             case Variable(name):
                 return _JavaScriptText(self._place(name))
             case Age(counter, comparison, number):
-                return _JavaScriptText(f"rail.{counter} {comparison.value} {number}", _COMPARED)
+                return _JavaScriptText(
+                    f"approximation.{counter} {comparison.value} {number}", _COMPARED
+                )
             case Not(negated):
                 return _JavaScriptText(f"!{self._value(negated).at_least(_ATOMIC)}")
             case And(values):

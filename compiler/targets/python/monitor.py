@@ -115,8 +115,8 @@ def remark(requirement: FormalizedRequirement) -> Diagnostic | None:
     """
     sentence = requirement.sentence
     scope = sentence.scope.kind if sentence.scope else None
-    owed = TRAITS[obligation(sentence, requirement.ticks or 0).demand.kind]
-    later = Trait.UNMET in owed and Trait.LAST not in owed
+    traits = TRAITS[obligation(sentence, requirement.ticks or 0).demand.kind]
+    later = Trait.UNMET in traits and Trait.LAST not in traits
     if sentence.condition is None or not later or not s.ends_with_run(scope):
         return None
     return diagnostic(
@@ -206,7 +206,7 @@ def _tuple(names: Sequence[str]) -> str:
 def _slots(code: ProgramCode) -> list[str]:
     """The `__slots__` of the state, in natural order."""
     marks = {name for signals in code.requirements for name in marks_of(signals.prefix)}
-    names = {"doubt", "tick", *(cell.name for cell in code.cells), *marks}
+    names = {"is_possible", "tick", *(cell.name for cell in code.cells), *marks}
     return sorted(names, key=_natural)
 
 

@@ -23,7 +23,7 @@ def class_prefix(id: str) -> str:
     """The prefix of the two classes of a requirement; `Variable_` for `Variable`."""
     name = _identifier(id)
     wanted = underlined(f"{name[0].upper()}{name[1:]}")
-    return next(n for n in wanted if _RUN_TIME.isdisjoint({f"{n}Rail", f"{n}Monitor"}))
+    return next(n for n in wanted if _RUN_TIME.isdisjoint({f"{n}Approximation", f"{n}Monitor"}))
 
 
 def _identifier(id: str) -> str:

@@ -124,7 +124,7 @@ def _unsubscribable(requirement: FormalizedRequirement) -> Iterator[Diagnostic]:
     declared = requirement.declarations.signals.values() if requirement.declarations else ()
     for signal in _signals([requirement]):
         topic, kind = signal.path.topic, _kind(signal)
-        place = signal.span or requirement.entry.wording
+        span = signal.span or requirement.entry.wording
         others = [
             _kind(declared_signal)
             for declared_signal in declared
@@ -133,18 +133,18 @@ def _unsubscribable(requirement: FormalizedRequirement) -> Iterator[Diagnostic]:
         if _TYPE.fullmatch(kind) is None:
             what = f"has the type `{kind}`, which is not a ROS type" if kind else "has no type"
             fix = f'add `type = "sensor_msgs/LaserScan"`, say, to `[signal.{signal.name}]`'
-            yield _refusal(requirement, f"`{signal.name}` {what}", place, fix)
+            yield _refusal(requirement, f"`{signal.name}` {what}", span, fix)
         elif any(other not in ("", kind) for other in others):
             what = (
                 f"{topic} has the type `{kind}` for one signal and another type for another signal"
             )
-            yield _refusal(requirement, what, place, "give all signals the type of their topic")
+            yield _refusal(requirement, what, span, "give all signals the type of their topic")
         elif _TOPIC.fullmatch(topic) is None:
             what = f"`{topic}` is not a valid ROS topic name"
             yield _refusal(
                 requirement,
                 what,
-                place,
+                span,
                 "a topic name has letters, digits, `_` and `/`: remap the topic",
             )
 
@@ -153,9 +153,9 @@ def _kind(signal: Signal) -> str:
     return short_type(signal.type or "")
 
 
-def _refusal(requirement: FormalizedRequirement, what: str, place: Span, fix: str) -> Diagnostic:
+def _refusal(requirement: FormalizedRequirement, what: str, span: Span, fix: str) -> Diagnostic:
     message = f"a ROS node cannot judge {requirement.id}: {what}"
-    return Diagnostic(Code.NOT_EXPRESSIBLE, message, place, help=fix)
+    return Diagnostic(Code.NOT_EXPRESSIBLE, message, span, help=fix)
 
 
 def refuse_project(options: TargetOptions) -> Diagnostic | None:

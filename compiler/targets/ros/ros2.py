@@ -63,8 +63,8 @@ def emit(
 def _files(package: Package) -> dict[str, str]:
     name = package.name
     files = {
-        place.format(name=name): render(f"ros2/{template}", **_values(package))
-        for place, template in _TEMPLATES.items()
+        path.format(name=name): render(f"ros2/{template}", **_values(package))
+        for path, template in _TEMPLATES.items()
     }
     files |= {f"{name}/{file}": text for file, text in shared.modules(package).items()}
     files |= shared.documents(package, 2)

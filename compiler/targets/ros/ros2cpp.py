@@ -80,13 +80,13 @@ def _values(package: Package) -> dict[str, Any]:
     at_instant = instant(package.requirements)
     assert at_instant is not None, "it is refused"
     names = joined_interface(package.requirements)
-    places = {policy.signal.name: place for place, policy in enumerate(at_instant.policies)}
+    places = {policy.signal.name: index for index, policy in enumerate(at_instant.policies)}
     topics = [topic.name for topic in package.topics]
     signals = [
         _signal(policy, function)
         for policy, function in zip(at_instant.policies, names.signals.signals, strict=True)
     ]
-    order = {meaning.name: place for place, meaning in enumerate(at_instant.meanings)}
+    order = {meaning.name: index for index, meaning in enumerate(at_instant.meanings)}
     return {
         "package": package,
         "apart": True,
@@ -129,8 +129,8 @@ def _values(package: Package) -> dict[str, Any]:
             for requirement, member in zip(package.requirements, names.outcomes, strict=True)
         ],
         "words": [
-            (place, word.name, [_ticks(function, order) for function in word.ticks])
-            for place, requirement in enumerate(package.requirements)
+            (index, word.name, [_ticks(function, order) for function in word.ticks])
+            for index, requirement in enumerate(package.requirements)
             for word in witness_traces(requirement)
         ],
         "parameters": [

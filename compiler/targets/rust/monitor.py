@@ -13,7 +13,7 @@ from compiler.files.artifact import Artifact
 from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.spelling.reserved_words import RUST
-from compiler.targets.c.fixed_memory import input_names, inputs, rail_of, too_large
+from compiler.targets.c.fixed_memory import input_names, inputs, monitor_program, too_large
 from compiler.targets.python.monitor import description, refusal, remark
 from compiler.targets.python.names import module
 from compiler.targets.rust import signals
@@ -47,7 +47,7 @@ def _crate(name: str, requirements: Sequence[FormalizedRequirement]) -> tuple[Ar
     """The files of a crate with one monitor for all of the requirements."""
     name = name if name[0].isalpha() else f"r{name}"
     names = input_names(requirements, RUST)
-    printer = RustPrinter.of(rail_of(requirements, RUST), names)
+    printer = RustPrinter.of(monitor_program(requirements, RUST), names)
     library = render(
         "rust/lib.rs.j2",
         **description(requirements),
@@ -59,7 +59,7 @@ def _crate(name: str, requirements: Sequence[FormalizedRequirement]) -> tuple[Ar
     )
     witnesses = {
         reading.prefix: witness_traces(requirement)
-        for reading, requirement in zip(printer.rail.readings, requirements, strict=True)
+        for reading, requirement in zip(printer.program.readings, requirements, strict=True)
     }
     tests = render("rust/words.rs.j2", crate=name, names=names, words=witnesses)
     manifest = render("rust/Cargo.toml.j2", crate=name, monitor=None)

@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import NamedTuple, assert_never
 
 from compiler.program.program import Counter, StoredFlag
-from compiler.program.rails import Deadline, Ring
 from compiler.program.statements import Statements
+from compiler.program.stored_program import Deadline, Ring
 from compiler.program.values import Age, Comparison, Not, Value
 
 
@@ -29,7 +29,7 @@ class RustPrinter(Statements):
 
     def fields(self) -> Iterator[StructField]:
         """The fields of all cells."""
-        for cell in self.rail.cells:
+        for cell in self.program.cells:
             match cell:
                 case StoredFlag(name, initial, comment):
                     yield StructField(name, "bool", str(initial).lower(), comment)

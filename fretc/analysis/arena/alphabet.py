@@ -70,14 +70,14 @@ class Alphabet(Protocol):
         """Subset of the valuations that can occur, over inputs, outputs and `memory`."""
 
     @property
-    def doubts(self) -> Mapping[Role, str]:
+    def uncertainties(self) -> Mapping[Role, str]:
         """Role → why its valuations are a superset of those that can occur; empty: they are exact.
 
         With a superset for inputs, strategies of the environment are uncertain; with a superset for
         outputs, strategies of the system are.
         """
 
-    def doubtful(self, role: Role) -> frozenset[str]:
+    def uncertain_atoms(self, role: Role) -> frozenset[str]:
         """Atoms for which a player has valuations that may be impossible."""
 
     @property

@@ -64,8 +64,8 @@ def counter(
     tick = _CounterTick(demanded, memory, past.value)
     timing = _timing(tick, demanded.demand.ticks)
     safe, fair = -timing.broken, timing.fair
-    if as_fret and timing.owed is not None:
-        safe, fair = safe - timing.owed, None
+    if as_fret and timing.obligation_pending is not None:
+        safe, fair = safe - timing.obligation_pending, None
     roots = [safe, tick.enforced, tick.triggered, *([] if fair is None else [fair])]
     bits = memory.needed(roots)
     steps = tuple(memory.steps[bit] for bit in bits)
@@ -138,7 +138,7 @@ def _interval(scope: ScopeKind | None, m: Function, memory: Memory) -> tuple[Fun
 @dataclass(frozen=True, slots=True)
 class _Timing:
     broken: Function
-    owed: Function | None = None
+    obligation_pending: Function | None = None
     """Whether an obligation is open at the end of the tick."""
     fair: Function | None = None
 
@@ -188,9 +188,9 @@ def _open(tick: _CounterTick, stays: Callable[[Function], Function]) -> Function
 def _eventually(tick: _CounterTick) -> _Timing:
     bit = tick.memory.bit()
     was = bdd.variable(bit.now)
-    owed = (tick.triggered | (tick.enforced & was)) - tick.q
-    tick.memory.steps[bit] = owed
-    return _Timing(was - tick.enforced, owed, -was)
+    pending = (tick.triggered | (tick.enforced & was)) - tick.q
+    tick.memory.steps[bit] = pending
+    return _Timing(was - tick.enforced, pending, -was)
 
 
 def _finally(tick: _CounterTick) -> _Timing:

@@ -71,13 +71,13 @@ class Memory:
     def needed(self, roots: Sequence[Function]) -> tuple[Bit, ...]:
         """Bits on which the functions depend, at this tick or a later one."""
         by_number = {bit.now: bit for bit in self.bits}
-        found: set[Bit] = set()
+        bits: set[Bit] = set()
         waiting = list(roots)
         while waiting:
             read = {by_number[n] for n in bdd.support(waiting.pop()) if n in by_number}
-            waiting.extend(self.steps[bit] for bit in read - found)
-            found |= read
-        return tuple(bit for bit in dict.fromkeys(self.bits) if bit in found)
+            waiting.extend(self.steps[bit] for bit in read - bits)
+            bits |= read
+        return tuple(bit for bit in dict.fromkeys(self.bits) if bit in bits)
 
 
 def side_by_side(words: Iterable[tuple[Bit, ...]], count: int) -> Numbers:
@@ -94,7 +94,7 @@ def side_by_side(words: Iterable[tuple[Bit, ...]], count: int) -> Numbers:
         for number in (bit.now, bit.after, bit.later)
     }
     order = sorted(range(count), key=lambda number: (-weights.get(number, count), number))
-    places = {number: place for place, number in enumerate(order)}
+    places = {number: index for index, number in enumerate(order)}
     return chain((places[number] for number in range(count)), numbers(count))
 
 
@@ -103,41 +103,41 @@ def side_by_side(words: Iterable[tuple[Bit, ...]], count: int) -> Numbers:
 
 def equals(word: Word, number: int) -> Function:
     """Whether the bit vector equals the number, which fits."""
-    found = bdd.true()
-    for place, bit in reversed([*enumerate(word)]):
-        found = (bit if number >> place & 1 else -bit) & found
-    return found
+    function = bdd.true()
+    for index, bit in reversed([*enumerate(word)]):
+        function = (bit if number >> index & 1 else -bit) & function
+    return function
 
 
 def constant(number: int, like: Word) -> Word:
     """The number as a bit vector of the same length."""
-    return [bdd.true() if number >> place & 1 else bdd.false() for place in range(len(like))]
+    return [bdd.true() if number >> index & 1 else bdd.false() for index in range(len(like))]
 
 
 def successor(word: Word) -> Word:
     """The number plus one; the greatest becomes 0."""
-    carry, found = bdd.true(), []
+    carry, bits = bdd.true(), []
     for bit in word:
-        found.append(bit ^ carry)
+        bits.append(bit ^ carry)
         carry = carry & bit
-    return found
+    return bits
 
 
 def predecessor(word: Word) -> Word:
     """The number minus one; 0 stays 0."""
-    borrow, found = some(word), []
+    borrow, bits = some(word), []
     for bit in word:
-        found.append(bit ^ borrow)
+        bits.append(bit ^ borrow)
         borrow = borrow - bit
-    return found
+    return bits
 
 
 def some(word: Word) -> Function:
     """Whether the number is above 0."""
-    found = bdd.false()
+    function = bdd.false()
     for bit in word:
-        found = found | bit
-    return found
+        function = function | bit
+    return function
 
 
 def either(condition: Function, then: Word, otherwise: Word) -> Word:
@@ -246,10 +246,10 @@ class PastMemory:
 def _folded(
     start: Function, functions: object, join: Callable[[Function, Function], Function]
 ) -> Function:
-    found = start
+    result = start
     for function in functions:  # type: ignore[attr-defined]
-        found = join(found, function)
-    return found
+        result = join(result, function)
+    return result
 
 
 @dataclass(frozen=True, slots=True)

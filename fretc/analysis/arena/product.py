@@ -45,8 +45,8 @@ class Fixed:
         self.inputs, self.outputs = tuple(alphabet.inputs), tuple(alphabet.outputs)
         self.legal, self.reachable = alphabet.legal, alphabet.reachable
         self.possible, self.certain = alphabet.possible, alphabet.certain
-        self.doubts, self.labels = alphabet.doubts, alphabet.labels
-        self.doubtful, self.open = alphabet.doubtful, alphabet.open
+        self.uncertainties, self.labels = alphabet.uncertainties, alphabet.labels
+        self.uncertain_atoms, self.open = alphabet.uncertain_atoms, alphabet.open
         self.is_refinable = alphabet.is_refinable
         self.memory = lambda: memory
 
@@ -64,7 +64,7 @@ def arena(
     Raises:
         UnsupportedError: an assumption has no counter.
     """
-    found: dict[str, RequirementCounter] = {}
+    counters: dict[str, RequirementCounter] = {}
     beyond: dict[str, str] = {}
     shared: dict[Function, Bit] = {}
     known = {id(requirement) for requirement in assumptions}
@@ -82,11 +82,11 @@ def arena(
                 raise UnsupportedError(f"of the assumption {requirement.id}: {error}") from None
             beyond[requirement.id] = str(error)
         else:
-            found[requirement.id] = made
+            counters[requirement.id] = made
     of_rules = tuple(
-        found[requirement.id] for requirement in requirements if requirement.id in found
+        counters[requirement.id] for requirement in requirements if requirement.id in counters
     )
-    of_assumptions = tuple(found[assumption.id] for assumption in assumptions)
+    of_assumptions = tuple(counters[assumption.id] for assumption in assumptions)
     return Arena(Fixed(alphabet), of_rules, of_assumptions, beyond)
 
 

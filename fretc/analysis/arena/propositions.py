@@ -55,18 +55,18 @@ class Propositions:
         )
         self._read = {name: _read(name, part, requirements) for name, part in self._parts.items()}
         self._numbers: dict[str, int] = {}
-        self.doubts: dict[Role, str] = {}
-        self._doubted: dict[Role, set[str]] = {Role.INPUT: set(), Role.OUTPUT: set()}
+        self.uncertainties: dict[Role, str] = {}
+        self._uncertain_atoms: dict[Role, set[str]] = {Role.INPUT: set(), Role.OUTPUT: set()}
         self._compared = dict(
             chain.from_iterable(comparisons(requirement).items() for requirement in requirements)
         )
         self._excluded = _exclusions(self._compared, requirements)
-        for role, reason in self._doubtful(requirements):
-            self.doubts.setdefault(role, reason)
+        for role, reason in self._uncertainties(requirements):
+            self.uncertainties.setdefault(role, reason)
 
-    def doubtful(self, role: Role) -> frozenset[str]:
+    def uncertain_atoms(self, role: Role) -> frozenset[str]:
         """Atoms for which a player has valuations that may be impossible."""
-        return frozenset(self._doubted[role])
+        return frozenset(self._uncertain_atoms[role])
 
     @property
     def is_refinable(self) -> bool:
@@ -102,11 +102,11 @@ class Propositions:
         called = next((each for each in e.parts(part) if isinstance(each, e.Call)), None)
         if called is not None and called.name.lower() not in _ABSOLUTE:
             raise UnsupportedError(f"it calls `{called.name}`")
-        found = {self._roles[each.id] for each in e.names(part)}
-        if len(found) > 1:
+        players = {self._roles[each.id] for each in e.names(part)}
+        if len(players) > 1:
             both = f"`{name}` compares what the environment and the system choose"
             raise UnsupportedError(self._refused.get(name, both))
-        return found.pop() if found else Role.INPUT
+        return players.pop() if players else Role.INPUT
 
     @property
     def inputs(self) -> Sequence[int]:
@@ -139,14 +139,14 @@ class Propositions:
     @property
     def certain(self) -> Function:
         """The possible patterns; false if some of them may be impossible."""
-        return bdd.false() if self.doubts else self.possible
+        return bdd.false() if self.uncertainties else self.possible
 
     def _possible(self, role: Role) -> Function:
-        found = bdd.true()
+        valid = bdd.true()
         for each in self._excluded:
             if all(name in self._numbers and self.role(name) is role for name, _ in each):
-                found = found - bdd.point({self._numbers[name]: value for name, value in each})
-        return found
+                valid = valid - bdd.point({self._numbers[name]: value for name, value in each})
+        return valid
 
     @property
     def labels(self) -> Mapping[int, str]:
@@ -157,7 +157,7 @@ class Propositions:
         """Atom → its value, by the names that formulas have."""
         return {name: letter[number] for name, number in self._numbers.items() if number in letter}
 
-    def _doubtful(
+    def _uncertainties(
         self, requirements: Sequence[FormalizedRequirement]
     ) -> Iterator[tuple[Role, str]]:
         """Variables whose atoms order alone cannot separate."""
@@ -177,9 +177,9 @@ class Propositions:
             plain = all(_is_plain(self._compared.get(atom), whole=whole) for atom in atoms)
             plain = plain and self._elsewhere.isdisjoint(atoms)
             if (len(atoms) > 1 or not isinstance(self._parts[atoms[0]], e.Name)) and not plain:
-                yield from self._doubt(atoms)
+                yield from self._uncertainty(atoms)
 
-    def _doubt(self, atoms: Sequence[str]) -> Iterator[tuple[Role, str]]:
+    def _uncertainty(self, atoms: Sequence[str]) -> Iterator[tuple[Role, str]]:
         """Role → why the valuations of these atoms may be impossible."""
         shown = f"`{atoms[0]}` compares numbers, and is treated as true or false at any tick"
         if len(atoms) > 1:
@@ -190,7 +190,7 @@ class Propositions:
         for atom in atoms:
             with suppress(UnsupportedError):
                 role = self.role(atom)
-                self._doubted[role].update(atoms)
+                self._uncertain_atoms[role].update(atoms)
                 yield role, shown
 
 

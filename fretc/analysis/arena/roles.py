@@ -96,8 +96,8 @@ def _no_role(
         what = "has no role: it may be chosen by the environment or by the system"
     line = f'role = "{likely}"'
     table = f"[{table}.{as_key(name)}]"
-    place, paste = first_use(requirement, name), f"{table}\n{line}"
-    return diagnostic("no_role", place, name=name, what=what, table=table, why=why, paste=paste)
+    span, paste = first_use(requirement, name), f"{table}\n{line}"
+    return diagnostic("no_role", span, name=name, what=what, table=table, why=why, paste=paste)
 
 
 _SHOWN = 60

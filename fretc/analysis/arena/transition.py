@@ -27,14 +27,14 @@ class Transition:
 
     def needed(self, *functions: Function) -> Transition:
         """The transition of the bits on which the functions depend, at a tick or a later one."""
-        waiting, found = list(functions), set[int]()
+        waiting, bits = list(functions), set[int]()
         while waiting:
             read = {number for number in bdd.support(waiting.pop()) if number in self._steps}
-            waiting.extend(self._steps[number] for number in read - found)
-            found |= read
+            waiting.extend(self._steps[number] for number in read - bits)
+            bits |= read
         kept = Transition(())
-        kept._after = {number: self._after[number] for number in self._steps if number in found}
-        kept._steps = {number: self._steps[number] for number in self._steps if number in found}
+        kept._after = {number: self._after[number] for number in self._steps if number in bits}
+        kept._steps = {number: self._steps[number] for number in self._steps if number in bits}
         kept.start = dict.fromkeys(kept._steps, False)
         return kept
 
@@ -60,11 +60,11 @@ class Transition:
             letters: cube of the variables of a valuation.
             known: cube of the variables with known values.
         """
-        found = bdd.at(ticks, known)
+        relation = bdd.at(ticks, known)
         for bit in sorted(self.bits, key=lambda bit: -bit.now):
             step = bdd.at(self._steps[bit.now], known)
-            found = found & -(bdd.variable(bit.after) ^ step)
-        return bdd.exists(found, letters)
+            relation = relation & -(bdd.variable(bit.after) ^ step)
+        return bdd.exists(relation, letters)
 
     def moved_from(self, states: Function, known: Function) -> Function:
         """`moved` for a known state, given as a cube: over the other variables of the valuation."""

@@ -97,9 +97,9 @@ class Cells:
     def _atom(self, name: str) -> Function:
         if name in self._lasting:
             return self._in_time(name)
-        found = self._atoms.found.get(name)
-        if found is not None and (z3.is_true(found.formula) or z3.is_false(found.formula)):
-            return bdd.true() if z3.is_true(found.formula) else bdd.false()
+        atom = self._atoms.found.get(name)
+        if atom is not None and (z3.is_true(atom.formula) or z3.is_false(atom.formula)):
+            return bdd.true() if z3.is_true(atom.formula) else bdd.false()
         group = self._of.get(name)
         return self._plain.atom(name) if group is None else group.atom(name)
 
@@ -107,13 +107,13 @@ class Cells:
         """Function of a proposition that depends on earlier ticks, also over their memory."""
         lasting = self._lasting[name]
         lasted = [self._lasted_so(each) for each in lasting.durations]
-        found = bdd.false()
+        function = bdd.false()
         for values, case in lasting.cases.items():
             term = self.atom(case)
             for value, each in zip(values, lasted, strict=True):
                 term = term & (each.is_so if value else -each.is_so)
-            found = found | term
-        return found
+            function = function | term
+        return function
 
     def _lasted_so(self, duration: StoredDuration) -> DurationValue:
         if duration not in self._lasted:
@@ -152,38 +152,38 @@ class Cells:
     @property
     def legal(self) -> Function:
         """Possible cells, and input patterns."""
-        found = self._plain.legal
+        function = self._plain.legal
         for each in self._used:
-            found = found & each.legal
-        return found
+            function = function & each.legal
+        return function
 
     @property
     def reachable(self) -> Function:
         """Patterns that the system can choose."""
-        found = self._plain.reachable
+        function = self._plain.reachable
         for each in self._used:
-            found = found & each.reachable
-        return found
+            function = function & each.reachable
+        return function
 
     @property
     def possible(self) -> Function:
         """All patterns."""
-        found = self._plain.possible
+        function = self._plain.possible
         for each in self._used:
-            found = found & each.possible
-        return found
+            function = function & each.possible
+        return function
 
     @property
     def certain(self) -> Function:
         """Patterns without unknown values; patterns of earlier numbers are never certain."""
         if self._atoms.before:
             return bdd.false()
-        found = self._plain.certain
+        function = self._plain.certain
         for each in self._used:
-            found = found & each.known
+            function = function & each.known
         for lasted in self._lasted.values():
-            found = found - lasted.is_open
-        return found
+            function = function - lasted.is_open
+        return function
 
     @property
     def is_refinable(self) -> bool:
@@ -205,24 +205,27 @@ class Cells:
         return None
 
     @property
-    def doubts(self) -> Mapping[Role, str]:
+    def uncertainties(self) -> Mapping[Role, str]:
         """Reasons for atoms outside the groups, and the reasons in `open`."""
-        return {**({} if self.open is None else {self._favoured: self.open}), **self._plain.doubts}
+        return {
+            **({} if self.open is None else {self._favoured: self.open}),
+            **self._plain.uncertainties,
+        }
 
     @property
     def labels(self) -> Mapping[int, str]:
         """The atom of each bit; a bit of a cell has none."""
         return {**self._plain.labels, **{n: a for each in self._used for n, a in each.labels()}}
 
-    def doubtful(self, role: Role) -> frozenset[str]:
+    def uncertain_atoms(self, role: Role) -> frozenset[str]:
         """Atoms for which a player has valuations that may be impossible."""
-        found = set(self._plain.doubtful(role))
+        names = set(self._plain.uncertain_atoms(role))
         if role is self._favoured:
             atoms = self._atoms.found.items()
-            found |= {name for name, atom in atoms if atom.reads & self._atoms.before.keys()}
-            found |= {name for name, group in self._of.items() if group.open is not None}
-            found |= self._lasting.keys()
-        return frozenset(found)
+            names |= {name for name, atom in atoms if atom.reads & self._atoms.before.keys()}
+            names |= {name for name, group in self._of.items() if group.open is not None}
+            names |= self._lasting.keys()
+        return frozenset(names)
 
     def memory(self) -> RequirementCounter | None:
         """Stored facts about earlier ticks, which the player of the numbers must respect."""
@@ -259,15 +262,15 @@ class Cells:
 
     def values(self, letter: Mapping[int, bool]) -> Tick:
         """Truth values of propositions, and numbers that satisfy the comparisons' truth values."""
-        found = self._plain.values(letter)
+        values = self._plain.values(letter)
         for each in self._used:
-            found |= each.values(letter)
+            values |= each.values(letter)
         known = bdd.point(letter)
         for name, function in self._asked.items():
             value = bdd.at(function, known)
             if self._atoms.is_proposition(name) and value in (bdd.true(), bdd.false()):
-                found[name] = value == bdd.true()
-        return found
+                values[name] = value == bdd.true()
+        return values
 
     @property
     def _used(self) -> Iterator[ComparisonGroup]:

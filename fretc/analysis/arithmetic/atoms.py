@@ -97,8 +97,8 @@ class Atoms:
         """Whether a sentence names the atom without a comparison."""
         if atom in self.lasting:
             return True
-        found = self.found.get(atom)
-        return found is not None and found.names == (atom,)
+        reading = self.found.get(atom)
+        return reading is not None and reading.names == (atom,)
 
     def domain(self, variable: str) -> Term:
         """Domain of a variable."""

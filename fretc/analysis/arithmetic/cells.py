@@ -53,14 +53,14 @@ def patterns(formulas: Sequence[Term], domain: Term, limit: Limit) -> tuple[Patt
     solver.add(domain)
     choices = [[*_followed(solver, [formulas[n] for n in numbers], limit)] for numbers in blocks]
     order = [n for numbers in blocks for n in numbers] + rest
-    found: list[Pattern] = []
+    signs: list[Pattern] = []
     for known in _joined(solver, formulas, [*zip(blocks, choices, strict=True)], limit):
         for others in _followed(solver, [formulas[n] for n in rest], limit):
             values = dict(zip(order, (*known, *others), strict=True))
-            found.append(tuple(values[number] for number in range(len(formulas))))
-            if len(found) > MOST:
+            signs.append(tuple(values[number] for number in range(len(formulas))))
+            if len(signs) > MOST:
                 raise UnsupportedError(f"have more than {MOST} patterns")
-    return tuple(found)
+    return tuple(signs)
 
 
 def _joined(
@@ -170,8 +170,8 @@ def _seen(formulas: Sequence[Term], domain: Term, limit: Limit) -> Iterator[Patt
     names = [z3.Bool(f"mark!{number}") for number in range(len(formulas))]
     solver.add([name == formula for name, formula in zip(names, formulas, strict=True)])
     count = 0
-    while (found := next_model(solver, limit)) is not None:
-        signs = tuple(z3.is_true(found.eval(name, model_completion=True)) for name in names)
+    while (model := next_model(solver, limit)) is not None:
+        signs = tuple(z3.is_true(model.eval(name, model_completion=True)) for name in names)
         yield signs
         count += 1
         if count > MOST:

@@ -38,12 +38,12 @@ class SolvedNumericTrace:
 
     def possible(self, inputs: Mapping[int, bool]) -> Function:
         """Function over outputs: the valuations that are possible at the next tick."""
-        found = bdd.true()
+        function = bdd.true()
         for group in self._groups:
             before = self._before(group)
             if before:
-                found = found & group.left(inputs, before, Limit(self._budget))
-        return found
+                function = function & group.left(inputs, before, Limit(self._budget))
+        return function
 
     def follow(self, letter: Mapping[int, bool]) -> None:
         """Choose numbers for the next tick."""
@@ -55,13 +55,13 @@ class SolvedNumericTrace:
 
     def _before(self, group: ComparisonGroup) -> list[Term]:
         """Values of the previous tick that a group reads."""
-        found: list[Term] = []
+        terms: list[Term] = []
         for name, before in self._atoms.before.items():
             if name not in group.names:
                 continue
             variable = self._atoms.variables[name]
             if self._numbers is None:
-                found.append(variable == before.first)
+                terms.append(variable == before.first)
             else:
-                found += fixed({name: self._numbers[before.of]}, [variable])
-        return found
+                terms += fixed({name: self._numbers[before.of]}, [variable])
+        return terms

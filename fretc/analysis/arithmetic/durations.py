@@ -77,7 +77,7 @@ def parted(
         )
     if len(spans) > _MOST:
         raise UnsupportedError("has too many durations")
-    found: dict[str, AtomReading] = {}
+    readings: dict[str, AtomReading] = {}
     durations = []
     for span in spans:
         if reading.period is None or span.duration % reading.period or span.duration == 0:
@@ -88,15 +88,15 @@ def parted(
         made = StoredDuration(
             f"{text} throughout", f"{text} at last", span.duration // reading.period
         )
-        found[made.throughout] = replace(reading, expression=span.arg, aggregate=Aggregate.ALL)
-        found[made.at_last] = replace(reading, expression=span.arg)
+        readings[made.throughout] = replace(reading, expression=span.arg, aggregate=Aggregate.ALL)
+        readings[made.at_last] = replace(reading, expression=span.arg)
         durations.append(made)
     cases = {}
     for values in product((True, False), repeat=len(spans)):
         expression = _put(reading.expression, dict(zip(spans, values, strict=True)))
         cases[values] = f"{name} where {values}"
-        found[cases[values]] = replace(reading, expression=expression)
-    return found, DurationProposition(tuple(durations), cases)
+        readings[cases[values]] = replace(reading, expression=expression)
+    return readings, DurationProposition(tuple(durations), cases)
 
 
 def _durations(part: e.Expression) -> Iterator[e.Persistence]:

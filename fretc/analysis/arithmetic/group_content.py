@@ -116,14 +116,14 @@ def _carried(
     ticks = {name: atoms.found[name].over for name in names}
     if all(each.carried is None for each in ticks.values()):
         return ()
-    found: dict[int, Term] = {}
+    terms: dict[int, Term] = {}
     links: list[Term] = []
     for name, tick in ticks.items():
         number, is_so = of[name]
         formula = tick.formula if tick.carried is None else tick.carried
-        found[number] = formula if is_so else z3.Not(formula)
+        terms[number] = formula if is_so else z3.Not(formula)
         links.extend([] if tick.links is None else [tick.links])
-    return (*(found[number] for number in sorted(found)), z3.And(links))
+    return (*(terms[number] for number in sorted(terms)), z3.And(links))
 
 
 def _bare(formula: Term) -> Term:

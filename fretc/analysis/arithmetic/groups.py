@@ -80,8 +80,8 @@ class ComparisonGroup:
             free = [n for n in range(len(self._choice.formulas)) if not self._is_of_cell(n)]
             self._bits = {number: next(self._fresh) for number in free}
         number, is_so = self._choice.of[name]
-        found = self._formula(number)
-        return found if is_so else -found
+        function = self._formula(number)
+        return function if is_so else -function
 
     def _is_of_cell(self, number: int) -> bool:
         """Whether a formula reads only inputs, in a group of both players."""
@@ -91,14 +91,14 @@ class ComparisonGroup:
     def _formula(self, number: int) -> Function:
         if number in self._bits:
             return bdd.variable(self._bits[number])
-        found = bdd.false()
-        for place, cell in enumerate(self._cells):
+        function = bdd.false()
+        for index, cell in enumerate(self._cells):
             if next(iter(cell.patterns))[number]:  # they agree on what is of inputs
-                found = found | self._cell(place)
-        return found
+                function = function | self._cell(index)
+        return function
 
-    def _cell(self, place: int) -> Function:
-        return bdd.point({bit: bool(place >> i & 1) for i, bit in enumerate(self._cell_bits)})
+    def _cell(self, index: int) -> Function:
+        return bdd.point({bit: bool(index >> i & 1) for i, bit in enumerate(self._cell_bits)})
 
     @property
     def inputs(self) -> Sequence[int]:
@@ -115,10 +115,10 @@ class ComparisonGroup:
         """Possible cells, or input patterns."""
         if self._choice.role is Role.INPUT:
             return self._of_player()
-        found = bdd.false() if self._cells else bdd.true()
-        for place in range(len(self._cells)):
-            found = found | self._cell(place)
-        return found
+        function = bdd.false() if self._cells else bdd.true()
+        for index in range(len(self._cells)):
+            function = function | self._cell(index)
+        return function
 
     @property
     def reachable(self) -> Function:
@@ -127,10 +127,10 @@ class ComparisonGroup:
             return bdd.true()
         if not self._cells:
             return self._of_player()
-        found = bdd.false()
-        for place, cell in enumerate(self._cells):
-            found = found | (self._cell(place) & self._some_of(cell.patterns))
-        return found
+        function = bdd.false()
+        for index, cell in enumerate(self._cells):
+            function = function | (self._cell(index) & self._some_of(cell.patterns))
+        return function
 
     def _of_player(self) -> Function:
         """Patterns of the player who chooses the numbers."""
@@ -147,10 +147,10 @@ class ComparisonGroup:
         return self.known | self._some_of(self._open)
 
     def _some_of(self, known: Iterable[Pattern]) -> Function:
-        found = bdd.false()
+        function = bdd.false()
         for pattern in known:
-            found = found | bdd.point({bit: pattern[n] for n, bit in self._bits.items()})
-        return found
+            function = function | bdd.point({bit: pattern[n] for n, bit in self._bits.items()})
+        return function
 
     def formulas(self) -> Iterator[tuple[int, Term]]:
         """Bit → its formula."""
@@ -169,34 +169,34 @@ class ComparisonGroup:
 
     def values(self, letter: Mapping[int, bool]) -> Tick:
         """Numbers for a valuation; numbers of inputs do not depend on the system."""
-        place = self._place(letter)
-        if place is None:
+        index = self._place(letter)
+        if index is None:
             return {}
         if not all(bit in letter for bit in self._bits.values()):
-            return self._atoms.tick(self._of_cell(place)) if self._cells else {}
-        key = place, self._signs(letter)
+            return self._atoms.tick(self._of_cell(index)) if self._cells else {}
+        key = index, self._signs(letter)
         if key not in self._points:
             self._points[key] = self._point(*key)
         return self._atoms.tick(self._points[key])
 
     def numbers(self, letter: Mapping[int, bool], given: Sequence[Term]) -> Point:
         """Numbers for a complete valuation; `given` are constraints that some numbers satisfy."""
-        place = self._place(letter)
-        assert place is not None, "the letter is whole"
-        return self._point(place, self._signs(letter), given)
+        index = self._place(letter)
+        assert index is not None, "the letter is whole"
+        return self._point(index, self._signs(letter), given)
 
     def left(self, inputs: Mapping[int, bool], given: Sequence[Term], limit: Limit) -> Function:
         """Function over outputs: the patterns of numbers that satisfy the constraints."""
-        choice, place = self._choice, self._place(inputs)
-        assert place is not None, "the inputs are whole"
+        choice, index = self._choice, self._place(inputs)
+        assert index is not None, "the inputs are whole"
         if choice.role is Role.INPUT:
             return bdd.true()
         free = [choice.formulas[number] for number in self._bits]
-        domain = z3.And(*choice.domains.values(), *given, *self._chosen(place))
-        found = bdd.false()
+        domain = z3.And(*choice.domains.values(), *given, *self._chosen(index))
+        function = bdd.false()
         for pattern in patterns(free, domain, limit):
-            found = found | bdd.point(dict(zip(self._bits.values(), pattern, strict=True)))
-        return found
+            function = function | bdd.point(dict(zip(self._bits.values(), pattern, strict=True)))
+        return function
 
     def _place(self, letter: Mapping[int, bool]) -> int | None:
         """Index of the cell; 0 without cells; None: the valuation does not determine it."""
@@ -207,19 +207,19 @@ class ComparisonGroup:
     def _signs(self, letter: Mapping[int, bool]) -> Pattern:
         return tuple(letter[bit] for bit in self._bits.values())
 
-    def _of_cell(self, place: int) -> Point:
-        if place not in self._in_cell:
+    def _of_cell(self, index: int) -> Point:
+        if index not in self._in_cell:
             inputs = self._choice.variables[Role.INPUT]
-            self._in_cell[place] = point([self._cells[place].region], inputs)
-        return self._in_cell[place]
+            self._in_cell[index] = point([self._cells[index].region], inputs)
+        return self._in_cell[index]
 
-    def _chosen(self, place: int) -> list[Term]:
+    def _chosen(self, index: int) -> list[Term]:
         """Numbers that the environment chooses in a cell."""
         if not self._cells:
             return []
-        return fixed(self._of_cell(place), self._choice.variables[Role.INPUT])
+        return fixed(self._of_cell(index), self._choice.variables[Role.INPUT])
 
-    def _point(self, place: int, signs: Pattern, given: Sequence[Term] = ()) -> Point:
+    def _point(self, index: int, signs: Pattern, given: Sequence[Term] = ()) -> Point:
         formulas = [self._choice.formulas[number] for number in self._bits]
         kept = [*literals(formulas, signs), *self._choice.domains.values(), *given]
         if signs not in self._open:
@@ -227,7 +227,7 @@ class ComparisonGroup:
         inputs, outputs = (self._choice.variables[role] for role in (Role.INPUT, Role.OUTPUT))
         if not self._cells:
             return point(kept, [*inputs, *outputs])
-        return self._of_cell(place) | point([*kept, *self._chosen(place)], outputs)
+        return self._of_cell(index) | point([*kept, *self._chosen(index)], outputs)
 
 
 # Groups -----------------------------------------------------------------------------------------

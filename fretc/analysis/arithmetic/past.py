@@ -46,22 +46,22 @@ def remembered(atoms: Atoms, steps: int) -> tuple[Remembered, ...]:
 def _conditions(atoms: Atoms, name: str, before: PreviousValue, steps: int) -> list[Term]:
     """Formulas of the tick that compare the number alone; one compares with the first value."""
     now, then = atoms.variables[before.of], atoms.variables[name]
-    found: dict[str, Term] = {}
+    conditions: dict[str, Term] = {}
     if not read_by(before.first):
         as_at_first = z3.simplify(now == before.first)
-        found[as_at_first.sexpr()] = as_at_first
+        conditions[as_at_first.sexpr()] = as_at_first
     for atom in atoms.found.values():
         if atom.reads == {before.of}:
-            found.setdefault(atom.formula.sexpr(), atom.formula)
+            conditions.setdefault(atom.formula.sexpr(), atom.formula)
         elif atom.reads == {name}:
             formula = z3.simplify(z3.substitute(atom.formula, (then, now)))
-            found.setdefault(formula.sexpr(), formula)
+            conditions.setdefault(formula.sexpr(), formula)
     if steps:
         formulas = [atom.formula for atom in atoms.found.values()]
-        for bound in reached(now, then, [*formulas, *found.values()], steps):
+        for bound in reached(now, then, [*formulas, *conditions.values()], steps):
             formula = _compared(now, bound)
-            found.setdefault(formula.sexpr(), formula)
-    return list(found.values())
+            conditions.setdefault(formula.sexpr(), formula)
+    return list(conditions.values())
 
 
 def _compared(variable: Term, bound: Bound) -> Term:

@@ -87,10 +87,10 @@ def projected(formula: Term, variables: Sequence[Term], limit: Limit) -> Term:
     return z3.simplify(z3.Or(parts))
 
 
-def _between(variable: Term, formula: Term, found: z3.ModelRef) -> Term:
+def _between(variable: Term, formula: Term, values: z3.ModelRef) -> Term:
     """A term with the variable's position in a model, between the adjacent bounds."""
-    here = _value(found, variable)
-    bounds = [(_value(found, bound), bound) for bound in _bounds(variable, formula, found)]
+    here = _value(values, variable)
+    bounds = [(_value(values, bound), bound) for bound in _bounds(variable, formula, values)]
     at = next((bound for value, bound in bounds if value == here), None)
     below = max(((v, n) for n, (v, _) in enumerate(bounds) if v < here), default=None)
     above = min(((v, n) for n, (v, _) in enumerate(bounds) if v > here), default=None)
@@ -108,9 +108,9 @@ def _between(variable: Term, formula: Term, found: z3.ModelRef) -> Term:
     return z3.IntVal(0) if whole else z3.RealVal(0)
 
 
-def _bounds(variable: Term, formula: Term, found: z3.ModelRef) -> Iterator[Term]:
+def _bounds(variable: Term, formula: Term, values: z3.ModelRef) -> Iterator[Term]:
     """Bounds of a variable in the comparisons of a formula, as real or integer terms."""
-    for left, right in _comparisons(formula, found):
+    for left, right in _comparisons(formula, values):
         zero, one = (
             z3.simplify(z3.substitute(left - right, (variable, _number(variable, n))))
             for n in (0, 1)
@@ -128,7 +128,7 @@ def _bounds(variable: Term, formula: Term, found: z3.ModelRef) -> Iterator[Term]
             yield real * z3.RealVal(str(-1 / exact))
 
 
-def _comparisons(formula: Term, found: z3.ModelRef) -> Iterator[tuple[Term, Term]]:
+def _comparisons(formula: Term, values: z3.ModelRef) -> Iterator[tuple[Term, Term]]:
     """Sides of all comparisons, with the alternatives that a model selects."""
     waiting, seen = [formula], set()
     while waiting:
@@ -138,20 +138,20 @@ def _comparisons(formula: Term, found: z3.ModelRef) -> Iterator[tuple[Term, Term
         seen.add(term.get_id())
         sides = term.children()
         if len(sides) == 2 and z3.is_bool(term) and all(map(z3.is_arith, sides)):
-            left, right = (_decided(side, found) for side in sides)
+            left, right = (_decided(side, values) for side in sides)
             yield left, right
         waiting.extend(sides)
 
 
-def _decided(term: Term, found: z3.ModelRef) -> Term:
+def _decided(term: Term, values: z3.ModelRef) -> Term:
     """A number term without alternatives."""
     if z3.is_app_of(term, z3.Z3_OP_ITE):
         condition, then, otherwise = term.children()
-        taken = z3.is_true(found.eval(condition, model_completion=True))
-        return _decided(then if taken else otherwise, found)
+        taken = z3.is_true(values.eval(condition, model_completion=True))
+        return _decided(then if taken else otherwise, values)
     if not term.children():
         return term
-    return term.decl()(*(_decided(each, found) for each in term.children()))
+    return term.decl()(*(_decided(each, values) for each in term.children()))
 
 
 def _floor(term: Term) -> Term:
@@ -162,5 +162,5 @@ def _number(like: Term, value: int) -> Term:
     return z3.IntVal(value) if like.is_int() else z3.RealVal(value)
 
 
-def _value(found: z3.ModelRef, term: Term) -> Fraction:
-    return Fraction(str(z3.simplify(found.eval(term, model_completion=True))))
+def _value(values: z3.ModelRef, term: Term) -> Fraction:
+    return Fraction(str(z3.simplify(values.eval(term, model_completion=True))))

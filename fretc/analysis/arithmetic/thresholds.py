@@ -119,8 +119,8 @@ def _alternatives(term: Term) -> list[Term]:
     if not term.children():
         return [term]
     parts = [_alternatives(each) for each in term.children()]
-    found = [term.decl()(*each) for each in product(*parts)]
-    return found if len(found) <= _MOST else []
+    terms = [term.decl()(*each) for each in product(*parts)]
+    return terms if len(terms) <= _MOST else []
 
 
 def _factors(term: Term) -> tuple[dict[str, Fraction], Fraction]:

@@ -86,15 +86,15 @@ class _Turns:
 
     def steps(self, reached: Sequence[Function]) -> dict[int, Function]:
         """The value of each bit after a tick; reaching a goal selects the next one."""
-        found = dict.fromkeys(self._bits, bdd.false())
+        steps = dict.fromkeys(self._bits, bdd.false())
         for number, ticks in enumerate(reached):
             following = (number + 1) % self._size
             for i, bit in enumerate(self._bits):
                 if following >> i & 1:
-                    found[bit] = found[bit] | (self.is_turn(number) & ticks)
+                    steps[bit] = steps[bit] | (self.is_turn(number) & ticks)
                 if number >> i & 1:
-                    found[bit] = found[bit] | (self.is_turn(number) - ticks)
-        return found
+                    steps[bit] = steps[bit] | (self.is_turn(number) - ticks)
+        return steps
 
 
 class _Moves:
@@ -122,23 +122,23 @@ class _Moves:
         if goal is None:
             return winning & self._into(winning)
         nearer = self._into(goal.target)
-        found = bdd.false()
+        function = bdd.false()
         layers = (None, *goal.layers)
         for before, layer in pairwise(layers):
             assert layer is not None
             own = layer.states if before is None else layer.states - before.states
-            found = found | (own & self._waiting(nearer, layer.stays))
+            function = function | (own & self._waiting(nearer, layer.stays))
             nearer = self.or_else(nearer, self._into(layer.states))
-        return found
+        return function
 
     def _waiting(self, nearer: Function, stays: Sequence[Function]) -> Function:
         """Moves that come nearer to the goal, or stay where the environment violates a promise."""
-        found, left = nearer, bdd.true()
+        function, left = nearer, bdd.true()
         for states, promise in zip(stays, self._game.promises, strict=True):
             mine = states & left
             left = left - states
-            found = found | self.or_else(nearer, mine & self._into(states - promise)) & mine
-        return found
+            function = function | self.or_else(nearer, mine & self._into(states - promise)) & mine
+        return function
 
 
 def _with_broken_word(game: Game, moves: Function) -> Function:
@@ -160,12 +160,12 @@ def _last_resorts(game: Game) -> Iterator[Function]:
 
 def _chosen(relation: Function, outputs: Sequence[int], budget: Budget) -> dict[int, Function]:
     """One value of each output, over the other variables."""
-    found: dict[int, Function] = {}
-    for place, output in enumerate(outputs):
+    functions: dict[int, Function] = {}
+    for index, output in enumerate(outputs):
         budget.check()
-        others = bdd.cube(outputs[place + 1 :])
+        others = bdd.cube(outputs[index + 1 :])
         when = {value: bdd.at(relation, bdd.literal(output, value)) for value in (False, True)}
         possible = {value: bdd.exists(when[value], others) for value in when}
-        found[output] = possible[True] - possible[False]
-        relation = bdd.ite(found[output], when[True], when[False])
-    return found
+        functions[output] = possible[True] - possible[False]
+        relation = bdd.ite(functions[output], when[True], when[False])
+    return functions

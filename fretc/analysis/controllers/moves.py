@@ -93,15 +93,15 @@ def _split(
     inputs: Function, functions: Mapping[int, Function]
 ) -> list[tuple[Function, dict[int, bool]]]:
     """Inputs split by the values of functions."""
-    found: list[tuple[Function, dict[int, bool]]] = [(inputs, {})]
+    pieces: list[tuple[Function, dict[int, bool]]] = [(inputs, {})]
     for number, function in functions.items():
-        found = [
+        pieces = [
             (part, {**values, number: value})
-            for some, values in found
+            for some, values in pieces
             for value, part in ((False, some - function), (True, some & function))
             if part != bdd.false()
         ]
-    return found
+    return pieces
 
 
 def _terms(inputs: Function, names: Mapping[int, str]) -> Iterator[Term]:

@@ -248,10 +248,10 @@ class _AttractorSearch:
         if not promises:
             return AttractorLayer(self._game.forced(near), ())
         stays = tuple(self._staying(near, promise) for promise in promises)
-        found = bdd.false()
+        function = bdd.false()
         for each in stays:
-            found = found | each
-        return AttractorLayer(found, stays)
+            function = function | each
+        return AttractorLayer(function, stays)
 
     def _staying(self, near: Function, promise: Function) -> Function:
         chain = self._chain(near, promise)

@@ -20,3 +20,9 @@ class Job(Generic[F]):
     """Function of the earlier findings that yields the answer."""
     lost: Callable[[str], F]
     """Function of a reason that gives the finding if there is no answer."""
+
+    def out_of_memory(self, limit: str = "there is") -> F:
+        """The finding if the memory, or the table of decision diagrams, is full."""
+        return self.lost(
+            f"it took more memory than {limit}, or more decision diagrams than their table holds"
+        )

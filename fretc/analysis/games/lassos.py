@@ -116,9 +116,9 @@ class _LassoSearch:
         self._solver.add(z3.Or(begins))
         for tick, begin in enumerate(begins):
             self._solver.add([z3.Implies(begin, each) for each in self._comes_back(tick)])
-        found = self._found(begins) if self._solver.check() == z3.sat else None
+        run = self._found(begins) if self._solver.check() == z3.sat else None
         self._solver.pop()
-        return found
+        return run
 
     def _tick(self, tick: int) -> Iterator[Term]:
         """Constraints of a tick: numbers and valuation agree, and no requirement is violated."""
@@ -191,20 +191,20 @@ def _term(function: Function, tick: int, known: dict[Function, Term]) -> Term:
 # Once more ------------------------------------------------------------------------------------
 
 
-def _letters(cells: Cells, found: SatisfyingRun) -> tuple[Mapping[int, bool], ...]:
+def _letters(cells: Cells, run: SatisfyingRun) -> tuple[Mapping[int, bool], ...]:
     """Valuations of a run with its loop repeated, computed from its numbers alone."""
     atoms = cells.numbers
-    length = len(found.numbers)
-    again = [*range(found.loop, length)] * (ROUNDS - 1)
+    length = len(run.numbers)
+    again = [*range(run.loop, length)] * (ROUNDS - 1)
     letters: list[Mapping[int, bool]] = []
     last: Mapping[str, Term] | None = None
     for tick in (*range(length), *again):
-        now = found.numbers[tick]
+        now = run.numbers[tick]
         values = {**now, **_before(atoms, now, last)}
         domains = (atoms.domain(name) for name in now)
         assert all(_holds(atoms, each, values) for each in domains), "a number has a wrong type"
         of_numbers = {bit: _holds(atoms, each, values) for bit, each in cells.formulas.items()}
-        letters.append({**found.others[tick], **of_numbers})
+        letters.append({**run.others[tick], **of_numbers})
         last = now
     return tuple(letters)
 

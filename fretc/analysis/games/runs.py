@@ -81,16 +81,16 @@ class SatisfyingRuns:
 
     def _eu_fixpoint(self, target: Function, through: Function) -> Function:
         """States with a run to the target that stays in `through` before it."""
-        found, leaps = bdd.false(), IterativeSquaring(self._counters)
+        states, leaps = bdd.false(), IterativeSquaring(self._counters)
         while True:
             self._budget.check()
             if leaps.is_due():
                 with leaps.trial():
-                    found = found | (through & self._paths(through).reaching(found))
-            more = found | (through & self.pre_image(target | found))
-            if more == found:
-                return found
-            found = more
+                    states = states | (through & self._paths(through).reaching(states))
+            more = states | (through & self.pre_image(target | states))
+            if more == states:
+                return states
+            states = more
 
     def is_possible(self) -> bool:
         """Whether an endless run satisfies all counters; tries a run without triggers first."""
@@ -109,21 +109,21 @@ class SatisfyingRuns:
             lasting: states of these runs.
         """
         initial, moved = self.transition.initial, self.transition.moved
-        found = bdd.and_exists(self.safe & ticks, moved(lasting), self._letters)
+        states = bdd.and_exists(self.safe & ticks, moved(lasting), self._letters)
         leaps = IterativeSquaring(self._counters)
         while True:
             self._budget.check()
             if leaps.is_due():
                 with leaps.trial():
-                    found = self._paths(bdd.true()).reaching(found)
-            if (initial & found) != bdd.false():
+                    states = self._paths(bdd.true()).reaching(states)
+            if (initial & states) != bdd.false():
                 return True
-            more = found | self.pre_image(
-                found
+            more = states | self.pre_image(
+                states
             )  # States before such a state are also on an endless run.
-            if more == found:
+            if more == states:
                 return False
-            found = more
+            states = more
 
     def can_break(self, counter: RequirementCounter, lasting: Function) -> bool:
         """Whether an endless satisfying run violates an observed counter.

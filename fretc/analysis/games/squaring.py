@@ -107,12 +107,12 @@ class TransitionRelation:
             OutOfTimeError: it takes too long.
         """
         after = bdd.cube(bit.after for bit in self.bits)
-        relation, found = self.function | identity(self.bits), goal
+        relation, states = self.function | identity(self.bits), goal
         while True:
-            more = bdd.and_exists(relation, _renamed(found, self.bits), after)
-            if more == found:
-                return found
-            relation, found = self._squared(relation), more
+            more = bdd.and_exists(relation, _renamed(states, self.bits), after)
+            if more == states:
+                return states
+            relation, states = self._squared(relation), more
 
     def longest(self, state: State) -> tuple[int, State]:
         """Number of ticks of the path from a state, and its end.
@@ -148,10 +148,10 @@ class TransitionRelation:
 
 def identity(bits: tuple[Bit, ...]) -> Function:
     """The relation of each state with itself."""
-    found = bdd.true()
+    function = bdd.true()
     for bit in sorted(bits, key=lambda bit: -bit.now):
-        found = -(bdd.variable(bit.now) ^ bdd.variable(bit.after)) & found
-    return found
+        function = -(bdd.variable(bit.now) ^ bdd.variable(bit.after)) & function
+    return function
 
 
 def _renamed(states: Function, bits: tuple[Bit, ...]) -> Function:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import field
 
 from compiler.situations.situations import Situation
-from fretc.audit.evidence.basis import Basis
+from fretc.audit.evidence.verdict_inputs import VerdictInputs
 from fretc.audit.measurements.count_trials import RequiredProbability
 from fretc.audit.measurements.violations import DemandText
 from fretish.classes.frozen import dataclass
@@ -17,7 +17,7 @@ class AuditedRequirement:
 
     id: str
     sentence: str
-    basis: Basis = field(compare=False)
+    verdict_inputs: VerdictInputs = field(compare=False)
     """SHA-256 of each input of the verdict other than the log."""
     monitor: str
     demand: DemandText

@@ -15,7 +15,7 @@ from compiler.files.records import UnsetType, decoded
 from compiler.files.text_files import read as read_text
 from compiler.files.text_files import sha256
 from fretc.audit.evidence.result_summaries import (
-    HeadProperties,
+    EvidenceSource,
     ResultSummary,
     RunFacts,
     run_facts,
@@ -43,17 +43,8 @@ VERDICTS = (
 
 
 @dataclass(frozen=True)
-class EvidenceFile(HeadProperties):
-    """An evidence file in memory, with its name and its SHA-256: an `EvidenceSource`."""
-
-    file: str
-    sha256: str
-    document: EvidenceDocument
-
-    @property
-    def head(self) -> EvidenceDocument:
-        """The facts of the audit as a whole."""
-        return self.document
+class EvidenceFile(EvidenceSource):
+    """An evidence file in memory."""
 
     @property
     def results(self) -> tuple[Result, ...]:

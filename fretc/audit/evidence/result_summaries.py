@@ -6,11 +6,12 @@ sorts them reads summaries, and asks for the few results that it shows in full.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import field, fields
 from operator import attrgetter
 from statistics import median
-from typing import Any, Protocol
+from typing import Any
 
 from compiler.files.checked_json import GREATEST, LEAST
 from compiler.files.records import (
@@ -24,10 +25,10 @@ from compiler.files.records import (
     Whole,
 )
 from compiler.files.records import field as record_field
-from fretc.audit.evidence.basis import KINDS
 from fretc.audit.evidence.probabilities import Estimated, Outcomes
 from fretc.audit.evidence.schema import (
     BindingsRecord,
+    EvidenceDocument,
     Hashes,
     Health,
     Labels,
@@ -39,13 +40,14 @@ from fretc.audit.evidence.schema import (
     Verdict,
     trials_of,
 )
+from fretc.audit.evidence.verdict_inputs import KINDS
 from fretc.audit.measurements.trials import Trials
 from fretish.bindings.canonical import digest
 from fretish.classes.frozen import dataclass
 from fretish.clock import period_of
 
 Recorded = tuple[str | UnsetType, ...]
-"""SHA-256 of each of `fretc.audit.evidence.basis.KINDS`; unset if it is unknown."""
+"""SHA-256 of each of `fretc.audit.evidence.verdict_inputs.KINDS`; unset if it is unknown."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,118 +125,71 @@ class RunFacts:
     """What is known of the run beside its messages: version, scenario and others."""
 
 
-class Head(Protocol):
-    """The facts of an audit as a whole, in a file or in a store."""
-
-    @property
-    def fretc(self) -> str:
-        """Version of the tool that audited."""
-
-    @property
-    def bindings(self) -> BindingsRecord:
-        """The bindings with which the logs were read."""
-
-    @property
-    def requirements(self) -> Sequence[RequirementRecord]:
-        """The requirements of the audit."""
-
-    @property
-    def probabilities(self) -> Sequence[Estimated] | UnsetType:
-        """The answers of all runs; unset if no requirement has a probability."""
-
-    @property
-    def selection(self) -> Selection | UnsetType:
-        """The selection of logs; unset: all."""
-
-
-class HeadProperties:
-    """The properties of an `EvidenceSource` that its head provides."""
-
-    @property
-    def head(self) -> Head:
-        """The facts of the audit as a whole."""
-        raise NotImplementedError
-
-    @property
-    def fretc(self) -> str:
-        """Version of the tool that audited."""
-        return self.head.fretc
-
-    @property
-    def bindings(self) -> BindingsRecord:
-        """The bindings with which the logs were read."""
-        return self.head.bindings
-
-    @property
-    def requirements(self) -> Sequence[RequirementRecord]:
-        """The requirements of the audit."""
-        return self.head.requirements
-
-    @property
-    def probabilities(self) -> Sequence[Estimated]:
-        """The answer of all runs for each requirement with a probability."""
-        return self.head.probabilities or ()
-
-    @property
-    def selection(self) -> Selection | None:
-        """The selection of the named logs that were audited; None: all."""
-        return self.head.selection or None
-
-
-class EvidenceSource(Protocol):
+@dataclass(frozen=True)
+class EvidenceSource(ABC):
     """Evidence in a file or in a store. The index of a result counts from 0."""
 
-    @property
-    def file(self) -> str:
-        """The name of the evidence, as the user gave it."""
+    file: str
+    """The name of the evidence, as the user gave it."""
+    sha256: str
+    """SHA-256 of the evidence file, or of the records of a store.
 
-    @property
-    def sha256(self) -> str:
-        """SHA-256 of the evidence file, or of the records of a store.
-
-        Another audit of the same logs gives the same.
-        """
+    Another audit of the same logs gives the same.
+    """
+    document: EvidenceDocument
+    """The evidence; that of a store without its results."""
 
     @property
     def fretc(self) -> str:
         """Version of the tool that audited."""
+        return self.document.fretc
 
     @property
     def bindings(self) -> BindingsRecord:
         """The bindings with which the logs were read."""
+        return self.document.bindings
 
     @property
     def requirements(self) -> Sequence[RequirementRecord]:
         """The requirements of the audit."""
+        return self.document.requirements
 
     @property
     def probabilities(self) -> Sequence[Estimated]:
         """The answer of all runs for each requirement with a probability."""
+        return self.document.probabilities or ()
 
     @property
     def selection(self) -> Selection | None:
         """The selection of the named logs that were audited; None: all."""
+        return self.document.selection or None
 
+    @abstractmethod
     def summaries(self) -> Iterator[tuple[int, ResultSummary]]:
         """The summary of each result with its index, in order; the results of a run adjoin."""
 
+    @abstractmethod
     def runs(self) -> Iterator[RunFacts]:
         """The facts of each run, in the order of their first results."""
 
+    @abstractmethod
     def details(self, indices: Collection[int]) -> Iterator[tuple[int, Result]]:
         """The whole results at the given indices, in order."""
 
+    @abstractmethod
     def latencies(self, requirements: Collection[str]) -> Iterator[tuple[int, Sequence[float]]]:
         """Latencies in seconds of each result of some requirements, with its index, in order.
 
         A store is read once for all of them.
         """
 
+    @abstractmethod
     def thresholds(
         self, requirements: Collection[str]
     ) -> Iterator[tuple[int, Sequence[ThresholdRecord]]]:
         """The thresholds of each result of some requirements, with its index, in order."""
 
+    @abstractmethod
     def situations(
         self, requirements: Collection[str]
     ) -> Iterator[tuple[int, Situations | UnsetType]]:

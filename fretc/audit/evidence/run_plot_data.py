@@ -69,7 +69,7 @@ def _words(signal: Signal, recording: Recording) -> EnumChanges:
     places, times = places[changed], times[changed]
     return EnumChanges(
         tuple(times[:MOST_WORDS].tolist()),
-        tuple(None if place < 0 else signal.values[place] for place in places[:MOST_WORDS]),
+        tuple(None if index < 0 else signal.values[index] for index in places[:MOST_WORDS]),
         max(0, len(places) - MOST_WORDS),
     )
 

@@ -41,6 +41,7 @@ from fretc.audit.evidence.samples import (
     window,
 )
 from fretc.audit.measurements.intervals import Moment as Moment
+from fretc.audit.measurements.intervals import TickInterval
 from fretc.audit.measurements.tallies import PropositionTally
 from fretc.audit.measurements.trials import Trials
 from fretc.audit.measurements.unknown_inputs import MOST as MOST_UNKNOWN
@@ -67,15 +68,9 @@ Part = Annotated[
 # Violations ------------------------------------------------------------------------------------
 
 
-class Violation(Record, frozen=True):
+class Violation(TickInterval, frozen=True):
     """An interval of ticks at which a demand was broken."""
 
-    first_tick: Count
-    last_tick: Count
-    start_ns: Whole
-    end_ns: Whole
-    start_s: Seconds
-    end_s: Seconds
     trigger: Annotated[Moment | None, about("the oldest trigger whose demand was broken")]
     deadline: Annotated[
         Moment | None,
@@ -95,16 +90,6 @@ class Violation(Record, frozen=True):
     surroundings: Annotated[Surroundings | None, about("null after the first 100 violations")] = (
         field(name="window")
     )
-
-    @property
-    def first(self) -> Moment:
-        """The first tick."""
-        return Moment(self.first_tick, self.start_ns, self.start_s)
-
-    @property
-    def last(self) -> Moment:
-        """The last tick."""
-        return Moment(self.last_tick, self.end_ns, self.end_s)
 
     @property
     def window(self) -> RunPart | None:

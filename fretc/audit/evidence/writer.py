@@ -192,7 +192,7 @@ def unread_result(
 def unjudged_result(
     run: str, requirement: str, reason: str, hashes: Mapping[str, str], health: Health
 ) -> Result:
-    """The result of a requirement that no log can be judged by: no data."""
+    """The result of a requirement by which no log can be evaluated: no data."""
     return Result(
         run=run,
         requirement=requirement,

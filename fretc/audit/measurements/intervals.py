@@ -19,6 +19,27 @@ class Moment(Record, frozen=True):
     seconds: Seconds
 
 
+class TickInterval(Record, frozen=True):
+    """An interval of ticks with their times, as in `Moment`."""
+
+    first_tick: Count
+    last_tick: Count
+    start_ns: Whole
+    end_ns: Whole
+    start_s: Seconds
+    end_s: Seconds
+
+    @property
+    def first(self) -> Moment:
+        """The first tick."""
+        return Moment(self.first_tick, self.start_ns, self.start_s)
+
+    @property
+    def last(self) -> Moment:
+        """The last tick."""
+        return Moment(self.last_tick, self.end_ns, self.end_s)
+
+
 def end_ns(last: Moment, clock: str) -> int | None:
     """The end of an interval in nanoseconds of the log; None: the clock ticks by message.
 

@@ -43,8 +43,8 @@ def _waits(outcome: Outcome) -> Iterator[tuple[int, int]]:
     for trigger in outcome.triggers:
         end = end_of.get(trigger)
         if end is None:
-            place = bisect_left(violations, trigger)
-            end = violations[place] if place < len(violations) else trigger
+            index = bisect_left(violations, trigger)
+            end = violations[index] if index < len(violations) else trigger
         if end > trigger:
             yield trigger, end - 1
 

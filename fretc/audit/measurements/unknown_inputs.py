@@ -10,8 +10,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import islice, pairwise
 from typing import TYPE_CHECKING, Annotated, Literal
 
-from compiler.files.records import Count, Record, Seconds, Whole, about
-from fretc.audit.measurements.intervals import Moment, interval_words
+from compiler.files.records import about
+from fretc.audit.measurements.intervals import Moment, TickInterval, interval_words
 from fretish.bindings.declarations import Declarations
 from monitors.kernel import Column
 from monitors.kernel.columns import runs_of
@@ -31,31 +31,15 @@ _WORDS: Mapping[str, str] = {
 }
 
 
-class UnknownInput(Record, frozen=True):
+class UnknownInput(TickInterval, frozen=True):
     """An interval of ticks at which a proposition was unknown."""
 
     proposition: str
-    first_tick: Count
-    last_tick: Count
-    start_ns: Whole
-    end_ns: Whole
-    start_s: Seconds
-    end_s: Seconds
     signal: Annotated[str, about("the signal that made it unknown; empty: that is not clear")]
     cause: Annotated[
         UnknownCause,
         about("what was wrong with the signal at the first tick; empty: that is not clear"),
     ]
-
-    @property
-    def first(self) -> Moment:
-        """The first tick."""
-        return Moment(self.first_tick, self.start_ns, self.start_s)
-
-    @property
-    def last(self) -> Moment:
-        """The last tick."""
-        return Moment(self.last_tick, self.end_ns, self.end_s)
 
     def in_words(self, clock: str) -> str:
         """`` `near` from 20.4 s to 22.2 s (1.8 s): the last sample of `clearance` was too old``.
@@ -104,7 +88,7 @@ def _interval(
     signals = declarations.propositions[name].signals
     signal, cause = next(_causes(signals, before, first.ns, declarations, recording), ("", ""))
     return UnknownInput(
-        name, first.tick, last.tick, first.ns, last.ns, first.seconds, last.seconds, signal, cause
+        first.tick, last.tick, first.ns, last.ns, first.seconds, last.seconds, name, signal, cause
     )
 
 

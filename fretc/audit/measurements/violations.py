@@ -86,7 +86,7 @@ def violations(
     """
     answers, triggers = dict(outcome.answers), tuple(outcome.triggers)
     stretches = []
-    for place, (first, last) in enumerate(outcome.violations):
+    for index, (first, last) in enumerate(outcome.violations):
         trigger = _cause(outcome, triggers, answers, deadline_ticks, first)
         deadline = (
             None
@@ -103,7 +103,7 @@ def violations(
                 recording,
                 signals,
             )
-            if place < MOST_WINDOWS
+            if index < MOST_WINDOWS
             else None
         )
         values = {name: value_at(recording, name, broken.ns) for name in signals}

@@ -24,8 +24,8 @@ from mcap.writer import Writer
 from compiler.files.build_id import __version__
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.record import wording
-from fretc.audit.evidence.basis import BINDINGS, CLOCK, MONITOR, PARAMS, SENTENCE, TOPICS
 from fretc.audit.evidence.schema import Result
+from fretc.audit.evidence.verdict_inputs import BINDINGS, CLOCK, MONITOR, PARAMS, SENTENCE, TOPICS
 from fretc.audit.log_paths import ANNOTATIONS
 from fretc.audit.measurements.intervals import end_ns
 from fretc.audit.measurements.states import OPEN, UNKNOWN
@@ -126,10 +126,10 @@ def state_topic(id: str) -> str:
 def _events(result: Result, requirements: Mapping[str, FormalizedRequirement]) -> Iterator[_Event]:
     """The events of one requirement; at equal times, causes come before effects."""
     id = result.requirement
-    place = requirements[id].entry.wording
+    span = requirements[id].entry.wording
 
     def event(ns: int, level: int, message: str) -> _Event:
-        where = {"name": id, "file": place.source.name, "line": place.line}
+        where = {"name": id, "file": span.source.name, "line": span.line}
         return _Event(max(0, ns), VERDICTS, {"level": level, "message": message, **where})
 
     answers = _longest_waits(result)

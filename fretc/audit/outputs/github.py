@@ -56,8 +56,8 @@ def github(
     return "".join(lines)
 
 
-def _annotation(level: str, place: Span, title: str, message: str) -> str:
-    where = f"file={_property(place.source.name)},line={place.line},title={_property(title)}"
+def _annotation(level: str, span: Span, title: str, message: str) -> str:
+    where = f"file={_property(span.source.name)},line={span.line},title={_property(title)}"
     return f"::{level} {where}::{_data(message)}\n"
 
 

@@ -137,22 +137,22 @@ def _add(connection: sqlite3.Connection, path: str, names: Sequence[str]) -> Dia
     return None
 
 
-def _insert(connection: sqlite3.Connection, table: str, found: Iterable[tuple[Any, ...]]) -> None:
+def _insert(connection: sqlite3.Connection, table: str, rows: Iterable[tuple[Any, ...]]) -> None:
     columns = ROW if table == "given" else TABLES[table]
     marks = ",".join("?" * len(columns))
     connection.execute("BEGIN")
-    connection.executemany(f"INSERT INTO {table} ({','.join(columns)}) VALUES ({marks})", found)
+    connection.executemany(f"INSERT INTO {table} ({','.join(columns)}) VALUES ({marks})", rows)
     connection.execute("COMMIT")
 
 
 def rows(source: EvidenceSource) -> Iterator[tuple[Any, ...]]:
     """The row of each result in the table `results`."""
-    found: Iterable[Result | CountedResult]
+    results: Iterable[Result | CountedResult]
     if isinstance(source, Store):
-        found = source.counted()
+        results = source.counted()
     else:
-        found = (result for _, result in source.details([n for n, _ in source.summaries()]))
-    return (row_of(result, source.fretc) for result in found)
+        results = (result for _, result in source.details([n for n, _ in source.summaries()]))
+    return (row_of(result, source.fretc) for result in results)
 
 
 def row_of(result: Result | CountedResult, fretc: str) -> tuple[Any, ...]:
@@ -206,13 +206,13 @@ def no_parquet() -> Diagnostic | None:
     return unless_installed("a Parquet table needs", ["pyarrow"], "parquet")
 
 
-def parquet(found: Iterable[tuple[Any, ...]]) -> bytes:
+def parquet(rows: Iterable[tuple[Any, ...]]) -> bytes:
     """The content of a Parquet file: equal rows give equal bytes."""
     import pyarrow
     from pyarrow.parquet import write_table
 
     schema = _schema()
-    columns = dict(zip(ROW, [*zip(*found, strict=True)] or [()] * len(ROW), strict=True))
+    columns = dict(zip(ROW, [*zip(*rows, strict=True)] or [()] * len(ROW), strict=True))
     arrays = [pyarrow.array(columns[field.name], field.type) for field in schema]
     stream = pyarrow.BufferOutputStream()
     write_table(pyarrow.Table.from_arrays(arrays, schema=schema), stream, compression="zstd")

@@ -17,7 +17,7 @@ from fretish.diagnostics.status_symbols import StatusSymbol
 from monitors import kernel
 
 NOT_JUDGED = "not judged"
-"""The word for a requirement that no log can be judged by."""
+"""The word for a requirement by which no log can be evaluated."""
 COUNTED = "counted over all runs"
 """The word for a run that alone decides nothing: its triggers count with those of all others."""
 _SEVERITY = {

@@ -55,8 +55,8 @@ class PropositionByPhase:
 
     def cut(self, phase: int) -> bool | None:
         """The value at the cut tick."""
-        place = int(np.searchsorted(self.cut_phases, phase, "right")) - 1
-        return truth_values(self.cut_states[place : place + 1])[0]
+        index = int(np.searchsorted(self.cut_phases, phase, "right")) - 1
+        return truth_values(self.cut_states[index : index + 1])[0]
 
 
 @dataclass(frozen=True, slots=True)

@@ -76,8 +76,8 @@ def _start_of_file(log: str) -> int | None:
     with opened(log, whole=False) as source:
         if isinstance(source, Diagnostic) or source.stream.read(len(MAGIC)) != MAGIC:
             return None
-        place = Source(name_of(log), "").span()
-        file_summary = with_budget(source.size, place, lambda: summary(source.stream, source.size))
+        span = Source(name_of(log), "").span()
+        file_summary = with_budget(source.size, span, lambda: summary(source.stream, source.size))
         if (
             file_summary is None
             or isinstance(file_summary, Diagnostic)

@@ -55,11 +55,11 @@ def read(path: str) -> EvidenceFile | Diagnostic:
 
 def required_source(path: str, *, in_full: bool = False) -> EvidenceSource | Diagnostic:
     """An evidence source; an error if the evidence does not exist."""
-    found = source(path, in_full=in_full)
-    return replace(found, severity=Severity.ERROR) if isinstance(found, Diagnostic) else found
+    result = source(path, in_full=in_full)
+    return replace(result, severity=Severity.ERROR) if isinstance(result, Diagnostic) else result
 
 
 def required(path: str) -> EvidenceFile | Diagnostic:
     """The evidence, or an error if it does not exist."""
-    found = read(path)
-    return replace(found, severity=Severity.ERROR) if isinstance(found, Diagnostic) else found
+    result = read(path)
+    return replace(result, severity=Severity.ERROR) if isinstance(result, Diagnostic) else result

@@ -139,12 +139,12 @@ def identity(head: str, rows: Sequence[Row]) -> str:
     return hashlib.sha256("\n".join(lines).encode()).hexdigest()
 
 
-def packed(place: int, results: Sequence[Result]) -> tuple[Row, bytes]:
+def packed(index: int, results: Sequence[Result]) -> tuple[Row, bytes]:
     """The record of a run."""
     data = record_text(results)
     record = zstandard.ZstdCompressor(level=_LEVEL).compress(data)
     hashes = (hashlib.sha256(each).hexdigest() for each in (data, record))
-    return Row(place, len(results), len(data), *hashes), record
+    return Row(index, len(results), len(data), *hashes), record
 
 
 def check_record(row: Row, record: bytes) -> None:
@@ -201,7 +201,7 @@ def _unfinished(folder: Path, number: int) -> Path:
 
 def _numbers(folder: Path) -> list[int]:
     names = os.listdir(folder) if folder.is_dir() else ()
-    return sorted(int(found[1]) for found in map(_UNFINISHED.fullmatch, names) if found)
+    return sorted(int(match[1]) for match in map(_UNFINISHED.fullmatch, names) if match)
 
 
 def written(path: Path, *, new: bool = False) -> sqlite3.Connection:
@@ -311,16 +311,16 @@ def rows(connection: sqlite3.Connection) -> list[Row]:
     return found
 
 
-def record_of(connection: sqlite3.Connection, place: int) -> bytes:
+def record_of(connection: sqlite3.Connection, index: int) -> bytes:
     """The packed record of a run.
 
     Raises:
         SchemaError: there is none.
     """
-    found = connection.execute("SELECT record FROM runs WHERE place = ?", (place,)).fetchone()
-    if found is None or not isinstance(found[0], bytes):
+    row = connection.execute("SELECT record FROM runs WHERE place = ?", (index,)).fetchone()
+    if row is None or not isinstance(row[0], bytes):
         raise SchemaError("a record is missing")
-    record: bytes = found[0]
+    record: bytes = row[0]
     return record
 
 

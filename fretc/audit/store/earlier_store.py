@@ -136,13 +136,13 @@ def _results(folder: Path, part: _Part) -> list[Result]:
     violations: list[list[Any]] = [[] for _ in main]
     for n, row in enumerate(tables["violations"]):
         _at(violations, row["result_row"]).append({**row, "window": windows.get(n)})
-    found, last = [], None
+    results, last = [], None
     for row, more, broken in zip(main, events, violations, strict=True):
         run = _at(runs, row["run_row"])
         course = None if row["run_row"] == last else run["course"]
         last = row["run_row"]
-        found.append(_result(row, {**more, "course": course}, run, broken))
-    return found
+        results.append(_result(row, {**more, "course": course}, run, broken))
+    return results
 
 
 def _at(rows: Sequence[Any], number: object) -> Any:

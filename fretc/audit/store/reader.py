@@ -30,7 +30,7 @@ from compiler.files.records import (
 from fretc.audit.evidence.reader import EvidenceFile
 from fretc.audit.evidence.result_summaries import (
     CountedResult,
-    HeadProperties,
+    EvidenceSource,
     PartialRecord,
     ResultSummary,
     RunFacts,
@@ -92,22 +92,12 @@ class _Propositions(PartialRecord, frozen=True):
 
 
 @dataclass(frozen=True)
-class Store(HeadProperties):
-    """An `EvidenceSource`. The methods that read records raise `StoreError`."""
+class Store(EvidenceSource):
+    """Evidence in a store. The methods that read records raise `StoreError`."""
 
-    file: str
-    """The name of the store, as the user gave it."""
-    sha256: str
     path: Path
     """The container."""
-    document: EvidenceDocument
-    """The evidence without its results."""
     rows: Sequence[Row]
-
-    @property
-    def head(self) -> EvidenceDocument:
-        """The facts of the audit as a whole."""
-        return self.document
 
     def summaries(self) -> Iterator[tuple[int, ResultSummary]]:
         """The summary of each result with its index, in order; the results of a run adjoin."""
@@ -163,8 +153,8 @@ class Store(HeadProperties):
         for index, each in enumerate(self._parts(_Thresholds)):
             if each.requirement in requirements:
                 with self._valid():
-                    found = strict(each.thresholds, list[ThresholdRecord])
-                yield index, found
+                    thresholds = strict(each.thresholds, list[ThresholdRecord])
+                yield index, thresholds
 
     def situations(
         self, requirements: Collection[str]
@@ -174,8 +164,8 @@ class Store(HeadProperties):
             if each.requirement in requirements:
                 raw = each.situations
                 with self._valid():
-                    found = UNSET if raw is UNSET else strict(raw, Situations)
-                yield index, found
+                    situations = UNSET if raw is UNSET else strict(raw, Situations)
+                yield index, situations
 
     def tallies(self) -> Iterator[dict[str, PropositionTally]]:
         """The tally of each proposition in each run."""
@@ -187,9 +177,9 @@ class Store(HeadProperties):
         for run in self._runs(_Violations):
             for each in run.results:
                 with self._valid():
-                    found = strict(each.violations, list[Violation])
-                if found:
-                    yield run.run, each.requirement, found
+                    violations = strict(each.violations, list[Violation])
+                if violations:
+                    yield run.run, each.requirement, violations
 
     def _parts(self, kind: type[T]) -> Iterator[T]:
         return (each for run in self._runs(kind) for each in run.results)
@@ -246,7 +236,7 @@ def opened(path: str) -> Store | EvidenceFile | Diagnostic:
     except (SchemaError, ValueError, TypeError) as error:
         return bad_store(path, f"cannot be read: {error}")
     name = str(Path(path))  # signatures are beside it
-    return Store(name, sha256, file, head, rows)
+    return Store(name, sha256, head, file, rows)
 
 
 def evidence(store: Store) -> EvidenceFile:

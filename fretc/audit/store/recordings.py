@@ -1,4 +1,4 @@
-"""The samples of logs, kept beside the evidence: what they are judged by may change without them.
+"""The samples of logs, kept beside the evidence: the requirements may change without them.
 
 A file for each log holds its `Recording`. It stands for the log as long as that is unchanged and
 the signals are declared as they were. Verdicts are taken from it, so it has a check that only the
@@ -129,8 +129,8 @@ class SampleCache:
 
 
 def _checked(path: Path, data: bytes, key: bytes) -> bytes:
-    place = os.path.realpath(path).encode("utf-8", "surrogateescape")
-    return hmac.digest(key, SCHEMA.encode() + b"\0" + place + b"\0" + data, "sha256")
+    real_path = os.path.realpath(path).encode("utf-8", "surrogateescape")
+    return hmac.digest(key, SCHEMA.encode() + b"\0" + real_path + b"\0" + data, "sha256")
 
 
 def _reading(declarations: Declarations, wanted: Sequence[str], integrity: Integrity) -> str:

@@ -102,9 +102,9 @@ class Authenticity:
 
     def mark(self, row: Row, entry: str) -> str:
         """What only the user's key can make of a run."""
-        place = os.path.realpath(self.folder)
+        real_path = os.path.realpath(self.folder)
         hashes = (row.sha256, row.packed_sha256)
-        text = json.dumps([place, self.plan, row.results, row.size, *hashes, entry])
+        text = json.dumps([real_path, self.plan, row.results, row.size, *hashes, entry])
         return hmac.digest(self.key, text.encode(), "sha256").hex()
 
     def entries(self, connection: Connection) -> Iterator[tuple[Row, Entry | None]]:

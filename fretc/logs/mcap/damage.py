@@ -48,7 +48,7 @@ class Damages:
         self.span: Gap | None = None
         """The earliest and the latest of the whole messages, in any order."""
         self._last: int | None = None
-        self._doubtful: list[Damage] = []
+        self._possible: list[Damage] = []
         self._waiting: list[Damage] = []
         """The damages after which no message has been read yet."""
         self._open: Damage | None = None
@@ -99,9 +99,9 @@ class Damages:
             self._open = damage
         self._keep(damage)
 
-    def doubt(self, at: int, description: str) -> None:
+    def add_possible(self, at: int, description: str) -> None:
         """Add a damage that counts unless the summary shows that nothing is missing."""
-        self._doubtful.append(self._new(at, description))
+        self._possible.append(self._new(at, description))
 
     def _new(self, at: int, description: str) -> Damage:
         damage = Damage(at, description, before=self._last)
@@ -134,7 +134,7 @@ class Damages:
 
     def _compare_chunks(self, summary: Summary, complete: Collection[int]) -> None:
         """Check that each chunk of the index was read as a whole."""
-        places = {damage.at: damage for damage in self._doubtful}
+        places = {damage.at: damage for damage in self._possible}
         places |= {at: damage for damage in self.certain for at in (damage.at, *damage.also)}
         for at, index in summary.chunks.items():
             if at in complete:
@@ -150,13 +150,13 @@ class Damages:
         """Check that as many messages were read as the statistics state."""
         statistics = summary.statistics
         if statistics is None:
-            self._keep(*self._doubtful)
+            self._keep(*self._possible)
             return
         listed = {id: n for id, n in statistics.channel_message_counts.items() if n}
         right = statistics.message_count == counts.total()
         if right and (not listed or listed == counts):
             return
-        self._keep(*self._doubtful)
+        self._keep(*self._possible)
         if all(damage.lossless for damage in self.certain):
             description = (
                 f"it states {statistics.message_count} messages, but holds {counts.total()}"

@@ -240,10 +240,10 @@ class Projection:
         self._stream.seek(begin)
         data = self._stream.read(chunk.message_index_length)
         entries = []
-        for id, place in chunk.message_index_offsets.items():
+        for id, offset in chunk.message_index_offsets.items():
             if id not in ids:
                 continue
-            at = place - begin
+            at = offset - begin
             start = at + _INDEX_RECORD.size
             if start > len(data):
                 raise BrokenError("a record is cut off")

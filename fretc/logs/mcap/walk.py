@@ -224,7 +224,7 @@ class Walk:
             raise BrokenError("a record has the opcode 0")
         if opcode not in _OPCODES:
             self._skip(length)
-            self.damages.doubt(at, f"a record has the unknown opcode {opcode}")
+            self.damages.add_possible(at, f"a record has the unknown opcode {opcode}")
             return
         if length > LARGEST:
             self._skip(length)

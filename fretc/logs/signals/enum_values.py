@@ -85,7 +85,7 @@ def _place(signal: Signal, value: object, name: str) -> float | str:
 @lru_cache(256)
 def _places(keys: tuple[str, ...] | tuple[int, ...]) -> Mapping[object, float]:
     """The enumeration values, or their numbers, with their indices."""
-    return {key: float(place) for place, key in enumerate(keys)}
+    return {key: float(index) for index, key in enumerate(keys)}
 
 
 def enum_indices(signal: Signal, numbers: Values) -> tuple[Numbers, NDArray[np.bool_]]:
@@ -118,6 +118,6 @@ def _plain(value: object) -> object:
     return int(value) if whole else value  # type: ignore[call-overload]
 
 
-def enum_value(place: float, values: Sequence[str]) -> str | None:
+def enum_value(index: float, values: Sequence[str]) -> str | None:
     """The enumeration value at an index; None: unknown."""
-    return None if isnan(place) else values[int(place)]
+    return None if isnan(index) else values[int(index)]

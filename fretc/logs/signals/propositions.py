@@ -104,8 +104,8 @@ def truth(expression: e.Expression, scope: NameValues) -> States:
         case e.Comparison(op, e.Name(id) as name, e.Word(text)) | e.Comparison(
             op, e.Word(text), e.Name(id) as name
         ):
-            place = Fraction(scope.words[id].index(text))
-            return _compared(op, term(name, scope), place, scope.length)
+            index = Fraction(scope.words[id].index(text))
+            return _compared(op, term(name, scope), index, scope.length)
         case e.Comparison(op, left, right):
             return _compared(op, term(left, scope), term(right, scope), scope.length)
         case e.Not(arg):
@@ -341,7 +341,7 @@ def _durations(expression: e.Expression) -> tuple[e.Persistence, ...]:
     """The outermost `... for 200 ms` in the expression."""
     if isinstance(expression, e.Persistence):
         return (expression,)
-    return tuple(found for part in e.children(expression) for found in _durations(part))
+    return tuple(duration for part in e.children(expression) for duration in _durations(part))
 
 
 def _at(steps: StepFunction, times: Times) -> States:

@@ -85,14 +85,14 @@ def late_topics(
 
 
 def late_messages(
-    topic: str, place: Span | None, count: int, of: int, over: int, clock: Clock
+    topic: str, span: Span | None, count: int, of: int, over: int, clock: Clock
 ) -> Diagnostic:
     """F429; `over` is the largest delay beyond the declared lateness."""
     lateness = clock.effective_lateness or 0
     needed = -(-(lateness + over) // 10**7) * 10**7
     return diagnostic(
         "late_messages",
-        place,
+        span,
         count=count,
         total=of,
         topic=topic,

@@ -49,7 +49,7 @@ class BagContents:
     notes: tuple[Diagnostic, ...]
 
 
-def read(file: str, same: str, start: bytes, sink: Sink, place: Span) -> BagContents | Diagnostic:
+def read(file: str, same: str, start: bytes, sink: Sink, span: Span) -> BagContents | Diagnostic:
     """Pass all messages of a bag to a sink, in order of time.
 
     Args:
@@ -57,7 +57,7 @@ def read(file: str, same: str, start: bytes, sink: Sink, place: Span) -> BagCont
         same: another path of the same open file, which no other file can replace.
         start: the first bytes of the bag, `BAG` or `DB3`.
         sink: receives the messages.
-        place: the bag, as named on the command line.
+        span: the bag, as named on the command line.
 
     Returns:
         Its contents; or why the bag cannot be read.
@@ -65,7 +65,7 @@ def read(file: str, same: str, start: bytes, sink: Sink, place: Span) -> BagCont
     try:
         import rosbags  # noqa: F401
     except ModuleNotFoundError:
-        return missing_extra("a bag cannot be read: that needs", ["rosbags"], "bags", place)
+        return missing_extra("a bag cannot be read: that needs", ["rosbags"], "bags", span)
     bag = start.startswith(BAG)
     reader = _bag(same) if bag else _db3(same)
     try:
@@ -74,7 +74,7 @@ def read(file: str, same: str, start: bytes, sink: Sink, place: Span) -> BagCont
     except OSError:
         raise
     except Exception as error:  # the reader trusts each byte, and each may be wrong
-        return storage_diagnostics.bad_bag(_reason(error), place, indexed=bag)
+        return storage_diagnostics.bad_bag(_reason(error), span, indexed=bag)
     try:
         way = _Way(reader, sink, bag=bag)
         way.run()
@@ -85,11 +85,11 @@ def read(file: str, same: str, start: bytes, sink: Sink, place: Span) -> BagCont
     damages = tuple(way.settled())
     if way.span is None:
         return (
-            storage_diagnostics.bad_bag(damages[0][0].description, place, indexed=bag)
+            storage_diagnostics.bad_bag(damages[0][0].description, span, indexed=bag)
             if damages
             else BagContents(None, (), ())
         )
-    return BagContents(way.span, damages, (storage_diagnostics.unchecked(place, way.assumed),))
+    return BagContents(way.span, damages, (storage_diagnostics.unchecked(span, way.assumed),))
 
 
 def ends(file: str) -> Gap | None:

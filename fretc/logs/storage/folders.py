@@ -80,11 +80,11 @@ def folder(path: str) -> Folder | Diagnostic:
         OSError: the file cannot be read.
     """
     file = Path(path) / METADATA
-    place = Source(name_of(str(file)), "").span()
+    span = Source(name_of(str(file)), "").span()
     with file.open("rb") as stream:
         data = stream.read(_LARGEST)
     return with_budget(
-        len(data), place, lambda: _described(path, data) or diagnostic("bad_run_metadata", place)
+        len(data), span, lambda: _described(path, data) or diagnostic("bad_run_metadata", span)
     )
 
 

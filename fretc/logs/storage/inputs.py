@@ -276,14 +276,14 @@ class _HashingFile(io.RawIOBase):
 
 
 def _remote(url: str, stack: ExitStack, *, whole: bool) -> OpenLog | Diagnostic:
-    place = Source(name_of(url), "").span()
+    span = Source(name_of(url), "").span()
     try:
         import fsspec
 
         system, path = fsspec.core.url_to_fs(url, **web.options(url))
         about = system.info(path)
         if about.get("type") == "directory":
-            return diagnostic("log_is_directory", place)
+            return diagnostic("log_is_directory", span)
         size = about.get("size")
         if size is None or about.get("partial") is False:
             file = stack.enter_context(closing(_stream(system, path)))
@@ -293,7 +293,7 @@ def _remote(url: str, stack: ExitStack, *, whole: bool) -> OpenLog | Diagnostic:
             return _copy(_copied(_LimitedStream(file, size), stack))
         file = stack.enter_context(system.open(path, "rb", block_size=_SMALL_BLOCK))
     except ImportError as error:
-        return storage_diagnostics.no_package(url, error, place)
+        return storage_diagnostics.no_package(url, error, span)
     except Exception as error:  # each protocol raises its own exceptions
         raise as_os_error(error) from error
     hashed = _HashingFile(file, size)

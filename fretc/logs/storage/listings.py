@@ -43,13 +43,13 @@ def below(url: str, is_log: Callable[[str], bool]) -> Sequence[str] | Diagnostic
     """
     if not url.endswith("/") and not _PATTERN.search(url):
         return None
-    place = Source(name_of(url), "").span()
+    span = Source(name_of(url), "").span()
     try:
-        return with_budget(_BYTES, place, lambda: _listed(url, is_log))
+        return with_budget(_BYTES, span, lambda: _listed(url, is_log))
     except ImportError as error:
-        return storage_diagnostics.no_package(url, error, place)
+        return storage_diagnostics.no_package(url, error, span)
     except OSError as error:
-        return diagnostic("folder_not_listed", place, reason=error.strerror or error)
+        return diagnostic("folder_not_listed", span, reason=error.strerror or error)
 
 
 def changed(url: str) -> int | None:

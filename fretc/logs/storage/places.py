@@ -23,9 +23,9 @@ class AllowedLocations:
     offline: bool = False
     """Whether no server is contacted."""
 
-    def refusal(self, place: str) -> str:
+    def refusal(self, location: str) -> str:
         """The reason why a location may not be opened; empty: it may be."""
-        return self._of_url(place) if is_url(place) else self._of_file(place)
+        return self._of_url(location) if is_url(location) else self._of_file(location)
 
     def _of_url(self, url: str) -> str:
         if self.offline:

@@ -97,8 +97,8 @@ def _redirects(scheme: str) -> Any:
     """Check a redirect: from `https` only to `https`."""
 
     async def check(session: object, context: object, request: Any) -> None:
-        place = request.response.headers.get("Location", "")
-        where = urlsplit(place).scheme.lower() or request.url.scheme
+        location = request.response.headers.get("Location", "")
+        where = urlsplit(location).scheme.lower() or request.url.scheme
         if where not in {scheme, "https"}:
             raise OSError(None, f"the server redirects to another protocol, `{where}`")
 

@@ -223,8 +223,8 @@ def _numbers(
 
 def _known(details: Details, places: Collection[int]) -> Mapping[int, Known]:
     """Index of a result → its intervals and signals of words."""
-    found = details.evidence.details(places) if details.evidence else ()
-    return {place: (stretches(result), word_lanes(result)) for place, result in found}
+    results = details.evidence.details(places) if details.evidence else ()
+    return {index: (stretches(result), word_lanes(result)) for index, result in results}
 
 
 def word_lanes(result: Result) -> tuple[WordLane, ...]:

@@ -130,13 +130,13 @@ def _row(
     worded: bool = False,
 ) -> UseRow:
     """The row of a run; texts only if `worded`, because most rows are not shown."""
-    found = list(_of_latency(run, allowed, letters))
+    uses = list(_of_latency(run, allowed, letters))
     for threshold in thresholds:
         key = _key(threshold)
         if key in bounds and key in letters and threshold.comparison is not None:
-            found.append(_of_threshold(threshold, bounds[key], letters[key], worded=worded))
-    found.sort(key=_most_used)
-    return UseRow(run.run_label, run.run_file, run.mark, run.anchor, run.section, tuple(found))
+            uses.append(_of_threshold(threshold, bounds[key], letters[key], worded=worded))
+    uses.sort(key=_most_used)
+    return UseRow(run.run_label, run.run_file, run.mark, run.anchor, run.section, tuple(uses))
 
 
 def _most_used(use: Use) -> tuple[bool, float, str]:

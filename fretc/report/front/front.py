@@ -91,7 +91,7 @@ def _facts(
 ) -> Iterator[str]:
     yield phrases.times(len(active), "requirement")
     yield _runs(runs) if runs else "no run"
-    reviews = [assessment.standing.review for assessment in assessed]
+    reviews = [assessment.review_status.review for assessment in assessed]
     dates = sorted(
         date.fromisoformat(review.date) for review in reviews if review and is_date(review.date)
     )

@@ -98,8 +98,8 @@ def _distances(runs: Sequence[AuditedFile], evidence: EvidenceSource | None) -> 
     if evidence is None or len(runs) > _PATHS:
         return {}
     anchors = {run.first: run.anchor for run in runs}
-    found = evidence.details(anchors)
-    ways = ((anchors[place], result.course.way) for place, result in found if result.course)
+    results = evidence.details(anchors)
+    ways = ((anchors[index], result.course.way) for index, result in results if result.course)
     return {anchor: _length(way) for anchor, way in ways if way is not None}
 
 

@@ -12,7 +12,6 @@ from compiler.project.project import Project
 from compiler.targets.python import monitor
 from fretc.analysis.evidence import AnalyzedSet
 from fretc.attestation.signatures import SignatureBook
-from fretc.audit.bases import bases
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.result_summaries import EvidenceSource, ResultSummaries, ResultSummary
 from fretc.audit.evidence.verdicts import (
@@ -26,11 +25,12 @@ from fretc.audit.evidence.verdicts import (
     severity,
 )
 from fretc.audit.measurements.trials import NO_TRIALS
+from fretc.audit.project_inputs import all_verdict_inputs
 from fretc.report.model.marks import Mark, verdict_mark
 from fretc.report.model.suspicions import AboutResults, about_estimation, since_review
 from fretc.traceability.artefacts import Product, monitors, products
 from fretc.traceability.chain import chains
-from fretc.traceability.lock import Lock, ReviewedRequirement, standings
+from fretc.traceability.lock import Lock, ReviewStatus, review_statuses
 from fretc.traceability.waivers import Waiver
 from fretc.verification.reader import Proofs
 from fretish.bindings.declarations import Declarations
@@ -149,7 +149,7 @@ class Assessment:
     audits: tuple[SingleAudit, ...]
     """The audit of each run, without regard to the review."""
     products: tuple[Product, ...]
-    standing: ReviewedRequirement
+    review_status: ReviewStatus
     waiver: Waiver | None
     """The waiver that is valid today."""
     is_bound: bool
@@ -164,7 +164,7 @@ class Assessment:
     @cached_property
     def reviewed_audits(self) -> tuple[SingleAudit, ...]:
         """The audits, suspect if what they depend on has changed since the review."""
-        review = () if self.standing.needs_only_analysis else since_review(self.standing)
+        review = () if self.review_status.needs_only_analysis else since_review(self.review_status)
         return tuple(audit.since(review) for audit in self.audits) if review else self.audits
 
     @property
@@ -195,7 +195,7 @@ class Assessment:
         if word in BROKEN and not all(reasons):
             return ()
         distinct = tuple(dict.fromkeys(reason for why in reasons for reason in why))
-        return distinct or since_review(self.standing)
+        return distinct or since_review(self.review_status)
 
     @property
     def is_shown(self) -> bool:
@@ -278,17 +278,17 @@ def assessments(
     diagnostics = {failed.requirement: failed.diagnostic for failed in project.failed}
     results = summaries.by_requirement if summaries else {}
     products_of = {id: products(requirement) for id, requirement in requirements.items()}
-    basis_of = bases(project, monitors=monitors(products_of))
-    all_chains = chains(project, summaries, products_of, proofs, basis_of, analyzed)
-    standing_of_each = standings(all_chains, lock)
+    inputs_of = all_verdict_inputs(project, monitors=monitors(products_of))
+    all_chains = chains(project, summaries, products_of, proofs, inputs_of, analyzed)
+    status_of_each = review_statuses(all_chains, lock)
     audited_by = summaries.source.fretc if summaries else ""
     anchors: list[str] = []
     assessed: list[Assessment] = []
-    for entry, standing in zip(project.requirements, standing_of_each, strict=True):
+    for entry, review_status in zip(project.requirements, status_of_each, strict=True):
         anchors.append(_anchor(entry.id, anchors))
         requirement = requirements.get(entry)
-        basis = basis_of[entry]
-        suspicions = AboutResults(basis, audited_by, formalized=requirement is not None)
+        verdict_inputs = inputs_of[entry]
+        suspicions = AboutResults(verdict_inputs, audited_by, formalized=requirement is not None)
         audits = tuple(
             SingleAudit(result, suspicions.of(result), place)
             for place, result in results.get(entry.id, ())
@@ -301,7 +301,7 @@ def assessments(
                 diagnostics.get(entry),
                 audits,
                 products_of.get(entry, ()),
-                standing,
+                review_status,
                 waivers.get(entry.id),
                 requirement is not None and _is_bound(requirement, project.declarations),
                 _probability(entry.id, requirement, summaries, audits),
@@ -326,8 +326,8 @@ def _probability(
         return ProbabilityAudit(estimation, tuple(reasons))
     results = [audit.result for audit in audits]
     runs = [(result.content, result.intact, result.trials or NO_TRIALS) for result in results]
-    doubts = about_estimation(estimation, requirement.sentence.probability, runs)
-    return ProbabilityAudit(estimation, tuple(dict.fromkeys((*stale, *doubts))))
+    suspicions = about_estimation(estimation, requirement.sentence.probability, runs)
+    return ProbabilityAudit(estimation, tuple(dict.fromkeys((*stale, *suspicions))))
 
 
 def _is_bound(requirement: FormalizedRequirement, declarations: Declarations | None) -> bool:

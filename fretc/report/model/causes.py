@@ -123,9 +123,9 @@ def _wanted(timing: s.Timing) -> bool | None:
             assert_never(timing)
 
 
-def in_words(found: Sequence[Cause]) -> str:
+def in_words(some: Sequence[Cause]) -> str:
     """The causes as one clause of a sentence."""
-    texts = list(dict.fromkeys(cause.text for cause in found))
+    texts = list(dict.fromkeys(cause.text for cause in some))
     more = len(texts) - _MOST
     return "; ".join([*texts[:_MOST], *([f"{more} more"] if more > 0 else [])])
 
@@ -302,10 +302,10 @@ class _ViolationTick:
         if self.violation.window is None:
             certain = signal.max_age is None and not self.result.health.gaps
             return self.violation.values[name] if certain else None
-        found = self._sample(name)
-        if found is None:
+        sample = self._sample(name)
+        if sample is None:
             return _UNKNOWN
-        time, value = found
+        time, value = sample
         if value is None or self._is_old(time, signal) or self._is_in_gap(time):
             return _UNKNOWN
         return value
@@ -333,10 +333,10 @@ class _ViolationTick:
 
     def why_unknown(self, name: str) -> str:
         """`` the last sample of `clearance` was 304 ms old, 300 ms are allowed``."""
-        signal, found = self.declarations.signals[name], self._sample(name)
-        if found is None or signal.max_age is None or not self._is_old(found[0], signal):
+        signal, sample = self.declarations.signals[name], self._sample(name)
+        if sample is None or signal.max_age is None or not self._is_old(sample[0], signal):
             return f"`{name}` was unknown"
-        age, limit = (self.violation.start_s - found[0]) * 1e3, signal.max_age / 1e6
+        age, limit = (self.violation.start_s - sample[0]) * 1e3, signal.max_age / 1e6
         return (
             f"the last sample of `{name}` was {_duration(age, limit)} old, "
             f"{_duration(limit, limit)} are allowed"

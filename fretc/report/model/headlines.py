@@ -54,10 +54,10 @@ def _groups(stale: Sequence[Assessment]) -> list[str]:
 
 def _reasons(assessment: Assessment) -> tuple[str, ...]:
     """The suspicions of a requirement, without changes since its review."""
-    standing = assessment.standing
-    if standing.review is None:
+    status = assessment.review_status
+    if status.review is None:
         return assessment.suspicions
-    since, brief = since_review(standing), changed_since(standing.review)
+    since, brief = since_review(status), changed_since(status.review)
     return tuple(brief if reason in since else reason for reason in assessment.suspicions)
 
 

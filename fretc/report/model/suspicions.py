@@ -7,14 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from fretc.audit.evidence.basis import KINDS, MONITOR, Basis, why
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.result_summaries import Recorded, ResultSummary
+from fretc.audit.evidence.verdict_inputs import KINDS, MONITOR, VerdictInputs, why
 from fretc.audit.measurements.confidence_intervals import SUPPORTED
 from fretc.audit.measurements.trials import Trials
 from fretc.traceability.chain import outdated
 from fretc.traceability.changes import in_words
-from fretc.traceability.lock import Review, ReviewedRequirement
+from fretc.traceability.lock import Review, ReviewStatus
 from fretish import syntax
 from monitors import kernel
 
@@ -22,15 +22,21 @@ from monitors import kernel
 class AboutResults:
     """Reasons why results of one requirement are suspect; common inputs are compared only once."""
 
-    def __init__(self, basis: Basis, audited_by: str, *, formalized: bool = True) -> None:
+    def __init__(
+        self, verdict_inputs: VerdictInputs, audited_by: str, *, formalized: bool = True
+    ) -> None:
         """Store the present inputs of a verdict.
 
         Args:
-            basis: fingerprints of the present inputs.
+            verdict_inputs: fingerprints of the present inputs.
             audited_by: the version of fretc that wrote the evidence.
             formalized: whether the sentence is formalized.
         """
-        self._basis, self._audited_by, self._formalized = basis, audited_by, formalized
+        self._verdict_inputs, self._audited_by, self._formalized = (
+            verdict_inputs,
+            audited_by,
+            formalized,
+        )
         self._outdated: dict[Recorded, tuple[str, ...]] = {}
 
     def of(self, result: ResultSummary) -> tuple[str, ...]:
@@ -42,8 +48,10 @@ class AboutResults:
 
     def _changes(self, recorded: Recorded) -> Iterator[str]:
         if self._formalized:
-            yield from map(why, outdated(recorded, self._audited_by, self._basis))
-        elif recorded[KINDS.index(MONITOR)] == self._basis[MONITOR]:  # no monitor then either
+            yield from map(why, outdated(recorded, self._audited_by, self._verdict_inputs))
+        elif (
+            recorded[KINDS.index(MONITOR)] == self._verdict_inputs[MONITOR]
+        ):  # no monitor then either
             yield "the sentence cannot be formalized now, and could not be formalized at the audit"
         else:
             yield "the sentence could be formalized at the audit, but cannot be formalized now"
@@ -85,11 +93,11 @@ def about_estimation(
         yield "a log is damaged, so it cannot support a probability"
 
 
-def since_review(standing: ReviewedRequirement) -> tuple[str, ...]:
+def since_review(status: ReviewStatus) -> tuple[str, ...]:
     """The changes since the review in one phrase; "" if the review is valid."""
-    if standing.review is None or not standing.is_suspect:
+    if status.review is None or not status.is_suspect:
         return ()
-    return (f"{changed_since(standing.review)}: {in_words(standing.changes)}",)
+    return (f"{changed_since(status.review)}: {in_words(status.changes)}",)
 
 
 def changed_since(review: Review) -> str:

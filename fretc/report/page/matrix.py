@@ -76,7 +76,7 @@ class HazardRows:
     title: str
     mark: Mark
     """The worst mark of its requirements."""
-    standing: str
+    summary: str
     """What the runs show of the requirements: a hazard itself has no verdict."""
     lines: tuple[MatrixRow, ...]
     tallies: tuple[CellTally, ...]
@@ -178,10 +178,10 @@ def _blocks(lines: Sequence[MatrixRow]) -> Iterator[HazardRows]:
     for hazard, below in groupby(lines, key=lambda line: line.row.hazard):
         those = tuple(below)
         title, worst = those[0].row.hazard_title, _worst(those)
-        yield HazardRows(hazard, title, worst, standing(those), those, (), (), "")
+        yield HazardRows(hazard, title, worst, summary(those), those, (), (), "")
 
 
-def standing(lines: Sequence[MatrixRow]) -> str:
+def summary(lines: Sequence[MatrixRow]) -> str:
     """`1 of 3 requirements is violated, 1 is not shown`.
 
     Args:
@@ -240,7 +240,7 @@ def _small(lines: Sequence[MatrixRow], groups: Sequence[RunGroup]) -> Iterator[H
                 block.hazard,
                 title,
                 _worst(part),
-                standing(part),
+                summary(part),
                 (),
                 tuple(_tallies(part, first, groups)),
                 tuple(kept),

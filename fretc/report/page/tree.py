@@ -55,7 +55,7 @@ class Placement:
     is_reference: bool = False
     """Whether this is a reference to the same element further up."""
     is_challenged: bool = False
-    is_doubtful: bool = False
+    is_in_doubt: bool = False
     """Whether the element or an element that supports it is challenged."""
 
     @property
@@ -69,21 +69,21 @@ class Placement:
         """`defeated`, `challenged` or `in doubt`; "" without counter-evidence."""
         if self.element.defeated:
             return "defeated"
-        return "challenged" if self.is_challenged else "in doubt" if self.is_doubtful else ""
+        return "challenged" if self.is_challenged else "in doubt" if self.is_in_doubt else ""
 
 
 def placements(elements: Sequence[Element]) -> tuple[Placement, ...]:
     """All elements from the top goal down: in full at the first place, then as references."""
     by_id = {element.id: element for element in elements}
     against = _challengers(elements)
-    doubtful = _above(set(against), by_id)
+    in_doubt = _above(set(against), by_id)
     drawn: set[str] = set()
     tree: list[Placement] = []
     waiting = [(element.id, 0, ElementRelation.SUPPORT) for element in elements[:1]]
     while waiting:
         id, depth, relation = waiting.pop()
         element = by_id[id]
-        tree.append(Placement(element, depth, relation, id in drawn, id in against, id in doubtful))
+        tree.append(Placement(element, depth, relation, id in drawn, id in against, id in in_doubt))
         if id in drawn:
             continue
         drawn.add(id)

@@ -56,8 +56,8 @@ class Scale:
 
     def ticks(self, most: int = _TICKS) -> list[tuple[float, str]]:
         """Coordinate and label of about `most` round numbers."""
-        found = places(self.first, self.last, most)
-        return [(self(place), _label(place, found)) for place in found]
+        positions = places(self.first, self.last, most)
+        return [(self(place), _label(place, positions)) for place in positions]
 
 
 def _label(place: float, among: Sequence[float]) -> str:

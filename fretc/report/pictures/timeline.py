@@ -128,9 +128,9 @@ def cause(
     """
     what = falsity(violation, result, requirement) or _missing(violation, result)
     at = seconds(violation.first.seconds)
-    found = causes(violation, result, requirement)
-    if found:
-        return f"{what}: at {at} {in_words(found)}."
+    reasons = causes(violation, result, requirement)
+    if reasons:
+        return f"{what}: at {at} {in_words(reasons)}."
     values = [
         f"{name} was {reading(name, violation, result, ages)}" for name in sorted(violation.values)
     ]
@@ -164,8 +164,8 @@ def _panel_in_words(panel: Panel) -> str:
 
 def _signal_in_words(lane: WordLane) -> str:
     """`mode is "drive", "docking" and unknown.`: each word once, in the order in which it came."""
-    found = dict.fromkeys("unknown" if word is None else f'"{word}"' for _, _, word in lane.words)
-    return f"{lane.signal} is {joined(list(found))}." if found else ""
+    words = dict.fromkeys("unknown" if word is None else f'"{word}"' for _, _, word in lane.words)
+    return f"{lane.signal} is {joined(list(words))}." if words else ""
 
 
 def _extent(points: Sequence[tuple[float, float, float]], panel: Panel) -> str:

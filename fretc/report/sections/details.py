@@ -52,9 +52,9 @@ class Details:
         rows_at: dict[int, list[ResultRow]] = {}
         for row in rows:
             rows_at.setdefault(row.place, []).append(row)
-        for place, result in self.evidence.details(rows_at) if self.evidence else ():
+        for index, result in self.evidence.details(rows_at) if self.evidence else ():
             known = in_declared_units(result, self.project.declarations)
-            for row in rows_at[place]:
+            for row in rows_at[index]:
                 yield row, known
 
     def results(self, rows: Iterable[ResultRow]) -> Iterator[tuple[ResultRow, ResultView]]:
@@ -79,16 +79,16 @@ class Details:
     ) -> Iterator[tuple[Assessment, Latencies, Thresholds]]:
         for group in self._groups(anchors):
             ids = {assessment.id for assessment in group}
-            found = self.evidence.latencies(ids) if self.evidence else ()
-            latencies = {place: array("d", some) for place, some in found}
+            latencies_of = self.evidence.latencies(ids) if self.evidence else ()
+            latencies = {index: array("d", some) for index, some in latencies_of}
             thresholds = self._thresholds(group)
             yield from ((assessment, latencies, thresholds) for assessment in group)
 
     def _thresholds(self, group: Sequence[Assessment]) -> Thresholds:
         declared = self.project.declarations
         ids = {assessment.id for assessment in group}
-        found = self.evidence.thresholds(ids) if self.evidence else ()
-        return {at: thresholds_in_declared_units(some, declared) for at, some in found}
+        thresholds_of = self.evidence.thresholds(ids) if self.evidence else ()
+        return {at: thresholds_in_declared_units(some, declared) for at, some in thresholds_of}
 
     def _groups(self, anchors: Iterable[str]) -> Iterator[list[Assessment]]:
         """The requirements in their order, in groups whose results are read at once."""

@@ -112,9 +112,9 @@ def _proof(section: RequirementView) -> Mark | None:
 
 
 def _review(assessment: Assessment) -> Mark:
-    if assessment.standing.review is None:
+    if assessment.review_status.review is None:
         return _UNREVIEWED
-    return _CHANGED if assessment.standing.is_suspect else _REVIEWED
+    return _CHANGED if assessment.review_status.is_suspect else _REVIEWED
 
 
 # Orphans ---------------------------------------------------------------------------------------

@@ -21,7 +21,7 @@ from compiler.logic.claims import PROVERS, ClaimResult, Layer
 from compiler.project.project import Project
 from fretc.analysis.evidence import AnalyzedSet
 from fretc.attestation.signatures import SIGNERS
-from fretc.audit.evidence.basis import of_all, of_bindings
+from fretc.audit.evidence.verdict_inputs import of_all, of_bindings
 from fretc.audit.measurements.confidence_intervals import CONFIDENCE
 from fretc.logs.storage.log_names import STDIN, name_of, path_of, shell_word
 from fretc.report.model import phrases

@@ -218,12 +218,12 @@ def situation_views(
         for assessment in assessed
         if assessment.audits and assessment.verdict != RETIRED
     }
-    found = (
+    views = (
         of_requirement
         for of_requirement in of_requirements(evidence, places)
         if of_requirement.id in places
     )
-    return {coverage_of_one.id: _situations(coverage_of_one) for coverage_of_one in found}
+    return {coverage_of_one.id: _situations(coverage_of_one) for coverage_of_one in views}
 
 
 def _situations(one: RequirementCoverage) -> SituationsView:

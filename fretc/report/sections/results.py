@@ -365,7 +365,7 @@ def reasons(
     held = sum(audit.mark.shows for audit in assessment.audits)
     if 0 < held < len(assessment.audits) and assessment.probability is None:
         few = (*few, f"it holds in {held} of {phrases.times(len(assessment.audits), 'run')}")
-    return (*few, *since_review(assessment.standing))
+    return (*few, *since_review(assessment.review_status))
 
 
 def _unformalized(assessment: Assessment) -> Iterator[str]:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from compiler.project.project import Project
 from fretc.attestation.signatures import SignatureBook
-from fretc.audit.evidence.basis import KINDS
+from fretc.audit.evidence.verdict_inputs import KINDS
 from fretc.audit.evidence.verdicts import SUSPECT
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
@@ -35,15 +35,15 @@ _SUSPECT = sign_mark(SUSPECT, signs.SUSPECT)
 
 def review(assessment: Assessment, book: SignatureBook) -> ReviewView:
     """The review of a requirement."""
-    accepted = assessment.standing.review
+    accepted = assessment.review_status.review
     if accepted is None:
         return ReviewView(_OPEN, "", "", (), None)
     signature = of_review(book, accepted)
     by = _by(accepted)
-    if not assessment.standing.is_suspect:
+    if not assessment.review_status.is_suspect:
         mark = _ACCEPTED if signature.is_good else _UNSIGNED
         return ReviewView(mark, by, accepted.comment, (), signature)
-    lines = tuple(change.text for change in assessment.standing.changes)
+    lines = tuple(change.text for change in assessment.review_status.changes)
     return ReviewView(_SUSPECT, by, accepted.comment, lines, signature)
 
 
@@ -62,22 +62,24 @@ def waiver(assessment: Assessment, book: SignatureBook) -> WaiverView | None:
 
 def summary(assessments: Sequence[Assessment], book: SignatureBook) -> str:
     """Sentences with the number of reviews, of current ones, and of unsigned ones."""
-    standings = [
-        assessment.standing for assessment in assessments if assessment.standing.review is not None
+    statuses = [
+        assessment.review_status
+        for assessment in assessments
+        if assessment.review_status.review is not None
     ]
-    if not standings:
+    if not statuses:
         return "No requirement has been reviewed."
-    suspect = sum(standing.is_suspect for standing in standings)
+    suspect = sum(status.is_suspect for status in statuses)
     verb = "stands" if suspect == 1 else "stand"
     stands = (
         f"; {suspect} of these reviews no longer {verb}" if suspect else ", all reviews are current"
     )
-    reviews = [standing.review for standing in standings if standing.review is not None]
-    unsigned = sum(not of_review(book, standing).is_good for standing in reviews)
+    reviews = [status.review for status in statuses if status.review is not None]
+    unsigned = sum(not of_review(book, review).is_good for review in reviews)
     verb = "is" if unsigned == 1 else "are"
-    who = f" {unsigned} of {len(standings)} {verb} unauthenticated." if unsigned else ""
+    who = f" {unsigned} of {len(statuses)} {verb} unauthenticated." if unsigned else ""
     count = phrases.times(len(assessments), "requirement")
-    return f"{len(standings)} of {count} reviewed{stands}.{who}"
+    return f"{len(statuses)} of {count} reviewed{stands}.{who}"
 
 
 def changes(assessments: Sequence[Assessment], project: Project) -> tuple[RequirementChanges, ...]:
@@ -85,10 +87,10 @@ def changes(assessments: Sequence[Assessment], project: Project) -> tuple[Requir
 
     A requirement without changes is left out.
     """
-    reviewed = [assessment for assessment in assessments if assessment.standing.review]
-    pairs = [(assessment, difference(assessment.standing, project)) for assessment in reviewed]
-    found = [_change(each, change) for each, change in pairs if change.state != "same"]
-    return tuple(sorted(found, key=lambda change: not change.is_root))
+    reviewed = [assessment for assessment in assessments if assessment.review_status.review]
+    pairs = [(assessment, difference(assessment.review_status, project)) for assessment in reviewed]
+    views = [_change(each, change) for each, change in pairs if change.state != "same"]
+    return tuple(sorted(views, key=lambda change: not change.is_root))
 
 
 def change_groups(
@@ -104,14 +106,14 @@ def change_groups(
     judged: set[ChangeText] = set()
     roots: set[ChangeText] = set()
     for assessment in assessments:
-        for change in assessment.standing.changes:
+        for change in assessment.review_status.changes:
             text = _text(change)
             touched.setdefault(text, []).append((assessment.id, assessment.anchor))
             if not change.is_of_analysis:
                 roots.add(text)
             if change.node.kind in KINDS:
                 judged.add(text)
-            links[text] += sum(map(change.makes_suspect, assessment.standing.suspects))
+            links[text] += sum(map(change.makes_suspect, assessment.review_status.suspects))
     groups = [
         ChangeGroup(text, tuple(of), links[text], text in roots) for text, of in touched.items()
     ]
@@ -185,7 +187,7 @@ def _change(assessment: Assessment, difference: ReviewDifference) -> Requirement
         consequences=difference.consequences,
         suspicion=difference.suspicion,
         verdicts=tuple((run, b or "none", now or "none") for run, b, now in difference.verdicts),
-        is_root=not assessment.standing.needs_only_analysis,
+        is_root=not assessment.review_status.needs_only_analysis,
     )
 
 
@@ -199,9 +201,12 @@ def _by(review: Review) -> str:
 
 def reservations(assessment: Assessment) -> Iterator[str]:
     """Sentences that qualify a review."""
-    if assessment.standing.review is None:
+    if assessment.review_status.review is None:
         return
-    new = assessment.standing.chain.verdicts.keys() - assessment.standing.review.verdicts.keys()
-    if new and not assessment.standing.is_suspect:
+    new = (
+        assessment.review_status.chain.verdicts.keys()
+        - assessment.review_status.review.verdicts.keys()
+    )
+    if new and not assessment.review_status.is_suspect:
         count = phrases.times(len(new), "run")
         yield f"{assessment.id} was audited against {count} after its review."

@@ -81,7 +81,7 @@ def _files(inputs: Inputs) -> Iterator[Signed]:
 
 def _people(book: SignatureBook, assessments: Sequence[Assessment]) -> Iterator[Signed]:
     for assessment in assessments:
-        review, waiver = assessment.standing.review, assessment.waiver
+        review, waiver = assessment.review_status.review, assessment.waiver
         if review is not None:
             name = f"{assessment.id}, by {review.reviewer}"
             yield Signed("review", name, assessment.anchor, of_review(book, review))
@@ -93,7 +93,7 @@ def _people(book: SignatureBook, assessments: Sequence[Assessment]) -> Iterator[
 def idle_signatures(book: SignatureBook, assessments: Sequence[Assessment]) -> Iterator[Diagnostic]:
     """F559 for each review and waiver with an invalid signature."""
     for assessment in assessments:
-        review, waiver = assessment.standing.review, assessment.waiver
+        review, waiver = assessment.review_status.review, assessment.waiver
         if review is not None:
             yield from _idle(f"the review of {assessment.id}", _review(book, review))
         if waiver is not None:

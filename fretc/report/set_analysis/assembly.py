@@ -138,13 +138,13 @@ class _Views:
         """The view of a run in columns; `loop` is a tick."""
         roles = self._document.analysis.roles
         names = lanes(ticks, roles)
-        found = columns(ticks, names)
-        back = [i for i, each in enumerate(found) if loop is not None and each.first <= loop]
+        lines = columns(ticks, names)
+        back = [i for i, each in enumerate(lines) if loop is not None and each.first <= loop]
         return Play(
-            tuple(conflict.head for conflict in found),
+            tuple(conflict.head for conflict in lines),
             tuple(
                 PlayLane(
-                    name, str(roles.get(name, "")), tuple(conflict.values[i] for conflict in found)
+                    name, str(roles.get(name, "")), tuple(conflict.values[i] for conflict in lines)
                 )
                 for i, name in enumerate(names)
             ),
@@ -155,37 +155,37 @@ class _Views:
 # The first screen ------------------------------------------------------------------------------
 
 
-def sentence(found: SetAnalysis) -> str:
+def sentence(analysis: SetAnalysis) -> str:
     """The sentence for the headline; "" if the analysis is good."""
-    if found.is_good:
+    if analysis.is_good:
         return ""
-    parts = [] if found.mark.word == REALIZABLE else [found.headline]
-    if found.suspicions:
-        why = phrases.some(found.suspicions, 3)
+    parts = [] if analysis.mark.word == REALIZABLE else [analysis.headline]
+    if analysis.suspicions:
+        why = phrases.some(analysis.suspicions, 3)
         parts.append(f"The analysis of all requirements together is suspect: {why}.")
-    if found.left_out:
-        names = phrases.some(found.left_out)
+    if analysis.left_out:
+        names = phrases.some(analysis.left_out)
         parts.append(f"Not analyzed: whether {names} can be satisfied together with the others.")
     return " ".join(parts)
 
 
-def in_overall(overall: Overall, found: SetAnalysis | None) -> Overall:
+def in_overall(overall: Overall, analysis: SetAnalysis | None) -> Overall:
     """The overall result, extended by the result of the analysis."""
-    if found is None:
+    if analysis is None:
         return overall
-    if found.is_good:
-        return replace(overall, sentences=(*overall.sentences, found.headline))
+    if analysis.is_good:
+        return replace(overall, sentences=(*overall.sentences, analysis.headline))
     mark = overall.mark
-    if found.is_broken and mark.kind != signs.BAD.kind:
-        mark = found.mark
+    if analysis.is_broken and mark.kind != signs.BAD.kind:
+        mark = analysis.mark
     elif mark.kind == signs.GOOD.kind:
         mark = sign_mark("not all shown", signs.OPEN)
-    return replace(overall, mark=mark, headline=f"{overall.headline} {sentence(found)}")
+    return replace(overall, mark=mark, headline=f"{overall.headline} {sentence(analysis)}")
 
 
-def in_front(front: Front, found: SetAnalysis | None) -> Front:
+def in_front(front: Front, analysis: SetAnalysis | None) -> Front:
     """The first screen, extended by the result of the analysis unless the headline contains it."""
-    said = "" if found is None else sentence(found)
+    said = "" if analysis is None else sentence(analysis)
     if not said or said in front.headline:
         return front
     return replace(front, headline=f"{front.headline} {said}")

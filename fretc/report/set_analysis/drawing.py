@@ -41,7 +41,7 @@ def drawing(play: Play, id: str, title: str, *, breaks: bool) -> dict[str, Any] 
     x = Scale(0, len(shown), left, left + column * len(shown))
     bottom = _TOP + _LANE * len(play.lanes)
     begin = count - 1 if play.loop is None else max(play.loop, shown[0])
-    first = next((place for place, each in enumerate(shown) if each >= begin), len(shown) - 1)
+    first = next((index for index, each in enumerate(shown) if each >= begin), len(shown) - 1)
     return {
         "id": id,
         "title": title,
@@ -49,10 +49,10 @@ def drawing(play: Play, id: str, title: str, *, breaks: bool) -> dict[str, Any] 
         "width": max(_WIDTH, round(x.end + _RIGHT)),
         "height": bottom + _FOOT,
         "lanes": [
-            _lane(lane, [lane.values[i] for i in shown], x, _TOP + _LANE * place)
-            for place, lane in enumerate(play.lanes)
+            _lane(lane, [lane.values[i] for i in shown], x, _TOP + _LANE * index)
+            for index, lane in enumerate(play.lanes)
         ],
-        "heads": [(x(place + 0.5), play.ticks[i]) for place, i in enumerate(shown)],
+        "heads": [(x(index + 0.5), play.ticks[i]) for index, i in enumerate(shown)],
         # The columns of the violation, or of the loop.
         "last": (x(first), round(column * (len(shown) - first), 1)) if breaks else None,
         "top": _TOP,
@@ -73,15 +73,15 @@ def _lane(lane: PlayLane, values: Sequence[str], x: Scale, y: int) -> dict[str, 
     if all(value in ("0", "1") for value in lane.values):
         base = f"M{x.start} {y + _HIGH + 4}h{x.end - x.start:.1f}"
         return {**drawn, "path": " ".join(_steps(values, x, y)), "base": base}
-    return {**drawn, "texts": [(x(place + 0.5), value) for place, value in enumerate(values)]}
+    return {**drawn, "texts": [(x(index + 0.5), value) for index, value in enumerate(values)]}
 
 
 def _steps(values: Sequence[str], x: Scale, y: int) -> Iterator[str]:
     """The path of a step line of 0 and 1."""
-    for place, value in enumerate(values):
+    for index, value in enumerate(values):
         level = y + 4 if value == "1" else y + _HIGH + 4
-        yield f"{'L' if place else 'M'}{x(place)} {level}"
-        yield f"L{x(place + 1)} {level}"
+        yield f"{'L' if index else 'M'}{x(index)} {level}"
+        yield f"L{x(index + 1)} {level}"
 
 
 def _in_words(play: Play, *, breaks: bool) -> str:

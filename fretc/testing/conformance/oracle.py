@@ -89,7 +89,7 @@ class Oracle:
 
     def triggered(self) -> frozenset[str]:
         """The requirements that were triggered."""
-        marks = zip(self._rules, self._monitor.must.marks(), strict=True)
+        marks = zip(self._rules, self._monitor.certain.marks(), strict=True)
         return frozenset(requirement.id for requirement, mark in marks if mark.last >= 0)
 
 
@@ -105,11 +105,11 @@ class ProgramTrace:
 
     def columns(self) -> dict[str, int]:
         """Each atom over time; unknown values count as false."""
-        found: dict[str, int] = {}
+        columns: dict[str, int] = {}
         for tick, truths in enumerate(self.truths):
             for name, truth in truths.items():
-                found[name] = found.get(name, 0) | (bool(truth) << tick)
-        return found
+                columns[name] = columns.get(name, 0) | (bool(truth) << tick)
+        return columns
 
     @property
     def is_known(self) -> bool:

@@ -152,16 +152,16 @@ class ProgramRun:
         while ready := self._selector.select(max(0.0, due - time.monotonic())):
             for key, _ in ready:
                 pipe, read = key.data
-                found = read(LONGEST_LINE)
-                if not found:
+                chunk = read(LONGEST_LINE)
+                if not chunk:
                     self._selector.unregister(key.fileobj)
                     if pipe is self._process.stdout:
                         raise ProgramError(self._ended())
                 elif pipe is self._process.stdout:
-                    self._buffer += found
+                    self._buffer += chunk
                     return True
                 else:
-                    self._errors = (self._errors + found)[-_LAST_WORDS:]
+                    self._errors = (self._errors + chunk)[-_LAST_WORDS:]
         return False
 
     # Messages

@@ -74,12 +74,12 @@ class RequirementGroup:
         fresh = numbers()
         alphabet = alphabet_of(every, roles, fresh, Role.INPUT, of_moments=True)
         shared: dict[Function, Bit] = {}
-        found: dict[str, RequirementCounter] = {}
+        counters: dict[str, RequirementCounter] = {}
         self.beyond: dict[str, str] = {}
         """Id of a requirement without a counter → the reason."""
         for each in near_each_other(every):
             try:
-                found[each.id] = counter(each, alphabet, fresh, shared)
+                counters[each.id] = counter(each, alphabet, fresh, shared)
             except UnsupportedError as error:
                 if each in assumptions:
                     raise
@@ -92,11 +92,11 @@ class RequirementGroup:
         self._memory = Memory(fresh, shared)
         self._past = PastMemory(self.alphabet.atom, self._memory)
         self._counters = {
-            requirement.id: found[requirement.id]
+            requirement.id: counters[requirement.id]
             for requirement in requirements
-            if requirement.id in found
+            if requirement.id in counters
         }
-        given = [found[assumption.id] for assumption in assumptions]
+        given = [counters[assumption.id] for assumption in assumptions]
         given += [before] if before is not None else []
         self.aims = tuple(aim for requirement in requirements for aim in self._aims(requirement))
         self.transition = Transition([*self._counters.values(), *given, self._remembered()])
@@ -166,25 +166,25 @@ class RequirementGroup:
         start = self.transition.start
         for shown, goal in zip(aim.shown, aim.goals, strict=True):
             reached = goal & self._reached(aim)
-            found = GoalPath(
+            path = GoalPath(
                 DistanceLayers(partial(self._forced, reached), self._inputs, budget),
                 DistanceLayers(partial(self._helped, reached), self._inputs, budget),
                 reached,
                 shown,
             )
-            if found.helped.number(start) is not None:
-                return found
+            if path.helped.number(start) is not None:
+                return path
         return None
 
     def _reached(self, aim: TargetState) -> Function:
         """Ticks of a goal that violate nothing else."""
         if aim.polarity is not Polarity.BROKEN:
             return self._safe
-        found = self.alphabet.reachable
+        function = self.alphabet.reachable
         for id, each in self._counters.items():
             if id != aim.requirement.id:
-                found = found & each.safe
-        return found
+                function = function & each.safe
+        return function
 
     def _forced(self, goal: Function, states: Function) -> Function:
         """Inputs that force the goal or the states, for all outputs."""
@@ -307,8 +307,8 @@ class GoalPath:
 
     def options(self, state: State) -> Function | None:
         """Inputs that lead nearer; None: there are none."""
-        found = self.distance(state)
-        if found is None:
+        distance = self.distance(state)
+        if distance is None:
             return None
-        number, is_forced = found
+        number, is_forced = distance
         return (self.forced if is_forced else self.helped).way(number, state)

@@ -12,33 +12,34 @@ from fretish.bindings.declarations import Role
 from fretish.diagnostics import status_symbols as signs
 
 
-def lines(found: Conformance, roles: Mapping[str, Role]) -> Iterator[Line]:
+def lines(conformance: Conformance, roles: Mapping[str, Role]) -> Iterator[Line]:
     """All lines of the output.
 
     Args:
-        found: results of a program.
+        conformance: results of a program.
         roles: roles of its columns.
     """
-    sign = signs.BAD if found.failures else signs.GOOD if found.is_complete else signs.UNKNOWN
-    yield f"{sign.glyph} {_headline(found)}", sign.colour
+    shown = signs.GOOD if conformance.is_complete else signs.UNKNOWN
+    sign = signs.BAD if conformance.failures else shown
+    yield f"{sign.glyph} {_headline(conformance)}", sign.colour
     yield "", None
-    yield from _table(found)
-    for failure in found.failures:
+    yield from _table(conformance)
+    for failure in conformance.failures:
         yield "", None
         yield from _failure(failure, roles)
-    rest = [*_rest(found)]
+    rest = [*_rest(conformance)]
     if rest:
         yield "", None
         yield from rest
 
 
-def _headline(found: Conformance) -> str:
-    size = f"{_some(found.runs, 'run')} of {_some(found.ticks, 'tick')} together"
-    name = f"`{join(found.command)}`"
-    if found.failures:
-        broken = listed([each.requirement for each in found.failures])
+def _headline(conformance: Conformance) -> str:
+    size = f"{_some(conformance.runs, 'run')} of {_some(conformance.ticks, 'tick')} together"
+    name = f"`{join(conformance.command)}`"
+    if conformance.failures:
+        broken = listed([each.requirement for each in conformance.failures])
         return f"{name} violates {broken}: {size}"
-    if not found.is_complete:
+    if not conformance.is_complete:
         return f"{name} violates nothing in {size}, but the test is not complete"
     return f"{name} conforms in {size}"
 
@@ -47,19 +48,19 @@ def _some(count: int, what: str) -> str:
     return f"{count:,} {what}{'' if count == 1 else 's'}".replace(",", " ")
 
 
-def _table(found: Conformance) -> Iterator[Line]:
-    broken = {each.requirement for each in found.failures}
-    width = max(map(len, found.requirements), default=0)
-    for id in found.requirements:
-        own = [situation for situation in found.situations if situation.requirement == id]
+def _table(conformance: Conformance) -> Iterator[Line]:
+    broken = {each.requirement for each in conformance.failures}
+    width = max(map(len, conformance.requirements), default=0)
+    for id in conformance.requirements:
+        own = [situation for situation in conformance.situations if situation.requirement == id]
         counts = {kind: sum(each.outcome is kind for each in own) for kind in GoalOutcome}
         shown = ", ".join(f"{count} {kind}" for kind, count in counts.items() if count)
-        sign = signs.BAD if id in broken else signs.GOOD if found.whole else signs.UNKNOWN
-        if id in found.not_judged:
-            sign, shown = signs.UNKNOWN, f"not judged: {found.not_judged[id]}"
+        sign = signs.BAD if id in broken else signs.GOOD if conformance.whole else signs.UNKNOWN
+        if id in conformance.not_judged:
+            sign, shown = signs.UNKNOWN, f"not judged: {conformance.not_judged[id]}"
         elif id in broken:
             shown = f"violated; {shown}" if shown else "violated"
-        elif id in found.untried:
+        elif id in conformance.untried:
             sign, shown = signs.UNKNOWN, f"never triggered; {shown}" if shown else "never triggered"
         yield f"  {sign.glyph} {id:<{width}}  {shown}".rstrip(), sign.colour
 
@@ -82,10 +83,10 @@ def _failure(failure: Failure, roles: Mapping[str, Role]) -> Iterator[Line]:
         )
 
 
-def _rest(found: Conformance) -> Iterator[Line]:
+def _rest(conformance: Conformance) -> Iterator[Line]:
     """Situations that were not reached."""
-    for id in found.requirements:
-        own = [situation for situation in found.situations if situation.requirement == id]
+    for id in conformance.requirements:
+        own = [situation for situation in conformance.situations if situation.requirement == id]
         free = [each.situation for each in own if each.outcome is GoalOutcome.UP_TO_PROGRAM]
         if free:
             text = f"{id}: depends on the program, and did not occur: {', '.join(free)}"

@@ -104,8 +104,8 @@ def _check_table(
             if not _is_value(value, inputs.get(name, StepInput(TRUTH))):
                 raise WrongError(f"`{test.name}`: `{name}` cannot be {value!r}")
     expected = (test.verdict, test.finite, test.decided, test.first_violation)
-    if (found := _outcome(monitor, read)) != expected:
-        shown = ", ".join(f"{each}" for each in found)
+    if (outcome := _outcome(monitor, read)) != expected:
+        shown = ", ".join(f"{each}" for each in outcome)
         raise WrongError(f"`{test.name}` expects another result than the monitor gives: {shown}")
 
 

@@ -99,7 +99,7 @@ def _numbers(requirement: FormalizedRequirement, test: Test) -> tuple[list[str],
     names = _names(test)
     signals = requirement.declarations.signals if requirement.declarations else {}
     used = [signals[name].values for name in names if name in signals and signals[name].values]
-    words = {word: float(place) for values in used for place, word in enumerate(values)}
+    words = {word: float(index) for values in used for index, word in enumerate(values)}
     constants = [word for word in words if word not in names]
     tail = tuple(words[word] for word in constants)
     rows = _long_enough(columns(test, names))

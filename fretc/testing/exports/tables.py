@@ -46,9 +46,9 @@ def truths(requirement: FormalizedRequirement, test: Test) -> TestTable:
 
 def columns(test: Test, names: Sequence[str]) -> tuple[Row, ...]:
     """Some columns of a test; equal adjacent ticks are one row."""
-    found = ((row.count, tuple(row.values[name] for name in names)) for row in test.rows)
+    rows = ((row.count, tuple(row.values[name] for name in names)) for row in test.rows)
     # 0, 0.0 and False are equal, but different values.
-    grouped = groupby(found, key=lambda row: [(type(cell), cell) for cell in row[1]])
+    grouped = groupby(rows, key=lambda row: [(type(cell), cell) for cell in row[1]])
     runs = ([*group] for _, group in grouped)
     return tuple((sum(count for count, _ in run), run[0][1]) for run in runs)
 

@@ -52,12 +52,12 @@ def choices(
         wished: preferred enumeration values, truth values, and numbers in the signal's unit; None:
             unknown.
     """
-    found = dict.fromkeys(_nominal(signal, each) for each in wished if each is not None)
+    values = dict.fromkeys(_nominal(signal, each) for each in wished if each is not None)
     if signal.values:
-        found |= dict.fromkeys(signal.values)
+        values |= dict.fromkeys(signal.values)
     else:
-        found |= dict.fromkeys(_points(signal.name, read_by))
-    made = [each for nominal in found for each in _made(signal, field, nominal)]
+        values |= dict.fromkeys(_points(signal.name, read_by))
+    made = [each for nominal in values for each in _made(signal, field, nominal)]
     return (*made, *_unknown(signal, field))
 
 
@@ -109,9 +109,9 @@ def _made(signal: Signal, field: SignalField, nominal: Fraction | str) -> Iterat
 
 def _contents(signal: Signal, field: SignalField, nominal: Fraction | str) -> Iterator[Content]:
     if isinstance(nominal, str):
-        place = signal.values.index(nominal) if nominal in signal.values else None
-        if place is not None:
-            yield signal.numbers[place] if signal.numbers else nominal
+        index = signal.values.index(nominal) if nominal in signal.values else None
+        if index is not None:
+            yield signal.numbers[index] if signal.numbers else nominal
         return
     if signal.reduce is Reduce.OUTLINE:
         yield from ([beam] for beam in _beams(signal, float(nominal)))

@@ -129,11 +129,11 @@ def search(
                 for number in range(found.runs + 1, found.runs + size + 1)
             ]
             with closing(map_processes(function, batch, jobs)) as done:
-                for place, one in done:
+                for index, one in done:
                     if isinstance(one, WorkerDied):
                         raise RuntimeError(f"the process of a mission was killed: {one}")
-                    known.append((batch[place], one))
-                    _note(found, aims, batch[place], one)
+                    known.append((batch[index], one))
+                    _note(found, aims, batch[index], one)
                     tell(found.runs, f"{len(found.shown)} of {len(aims)} shown")
 
 

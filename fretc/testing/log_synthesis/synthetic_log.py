@@ -74,9 +74,9 @@ def synthesize(test: Test, declarations: Declarations, monitor: Monitor) -> Synt
     names = dict.fromkeys(name for one in parts for name in one.proposition.signals)
     signals = [declarations.signals[name] for name in names]
     stage = _SignalSearch(parts, signals, {signal.name: field(signal) for signal in signals})
-    found = tick_plan(test, parts, monitor)
-    contents = stage.contents(test, found)
-    return SyntheticLog(found.lead, tuple(_messages(stage, contents, clock.period, declarations)))
+    plan = tick_plan(test, parts, monitor)
+    contents = stage.contents(test, plan)
+    return SyntheticLog(plan.lead, tuple(_messages(stage, contents, clock.period, declarations)))
 
 
 class _SignalSearch:
@@ -92,20 +92,20 @@ class _SignalSearch:
         self._parts = parts
         self._known: dict[tuple[object, ...], tuple[FieldContent, ...] | None] = {}
 
-    def contents(self, test: Test, found: TickPlan) -> list[tuple[FieldContent, ...]]:
+    def contents(self, test: Test, plan: TickPlan) -> list[tuple[FieldContent, ...]]:
         """Contents of each tick, in the order of the signals."""
         rows = [row for row in test.rows for _ in range(row.count)]
-        rows = [rows[0]] * found.lead + rows
+        rows = [rows[0]] * plan.lead + rows
         made: list[tuple[FieldContent, ...]] = []
         for tick, row in enumerate(rows):
-            wanted = tuple(found.wanted[one.proposition.name][tick] for one in self._parts)
+            wanted = tuple(plan.wanted[one.proposition.name][tick] for one in self._parts)
             wished = tuple(row.values.get(signal.name, math.nan) for signal in self.signals)
             key = wanted, tuple(map(repr, wished))
             if key not in self._known:
                 self._known[key] = self._chosen(wanted, wished)
             chosen = self._known[key]
             if chosen is None:
-                raise NotRecordableError(self._impossible(wanted, tick - found.lead))
+                raise NotRecordableError(self._impossible(wanted, tick - plan.lead))
             made.append(chosen)
         return made
 

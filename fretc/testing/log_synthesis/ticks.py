@@ -151,7 +151,7 @@ def _unchanged(test: Test, lead: int, seen: Mapping[str, Truths], monitor: Monit
     monitor.reset()
     for tick in range(lead + test.ticks):
         monitor.advance([tuple(seen[name][tick] for name in monitor.PROPOSITIONS)])
-    (standing,) = monitor.standings()
-    first = standing.first_violation
+    (status,) = monitor.statuses()
+    first = status.first_violation
     moved = None if first is None else first - lead
-    return str(standing.verdict) == test.verdict and moved == test.first_violation
+    return str(status.verdict) == test.verdict and moved == test.first_violation

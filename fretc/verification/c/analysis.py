@@ -39,15 +39,15 @@ def analysed(
     """
     artefacts = {name: sha256(text) for name, text in given.texts.items()}
     try:
-        found = checked(given, (*requirements, *others))
-        run = prepared(given, found)
+        source = checked(given, (*requirements, *others))
+        run = prepared(given, source)
     except UnexpectedLayoutError as error:
         for requirement in requirements:
             yield RequirementOutcome(requirement, not_checked(str(error)), frama_c.NAME, artefacts)
         return
     outcome, engine = frama_c.answer(program, run, limits)
     artefacts[f"{PurePath(given.name).stem}_driver.c"] = sha256(run.driver)
-    own = {requirement.id for requirement in found.requirements}
+    own = {requirement.id for requirement in source.requirements}
     absent = not_checked("the monitor is for other requirements")
     for requirement in requirements:
         yield RequirementOutcome(
@@ -55,14 +55,14 @@ def analysed(
         )
 
 
-def prepared(given: SourceText, found: ParsedSource) -> frama_c.EvaInput:
+def prepared(given: SourceText, source: ParsedSource) -> frama_c.EvaInput:
     """The texts to analyse, without comments, which could be annotations.
 
     Args:
         given: the texts.
-        found: their parsed layout.
+        source: their parsed layout.
     """
-    made = driver(PurePath(given.header_name).stem, base(given), found.requirements)
+    made = driver(PurePath(given.header_name).stem, base(given), source.requirements)
     return frama_c.EvaInput(
         without_comments(given.text),
         (given.header_name, without_comments(given.header)),

@@ -46,16 +46,17 @@ def built(program: str, text: str, header: tuple[str, str], layout: str) -> Bina
 
 
 def layout(header: str, base: str, cells: Sequence[str]) -> str:
-    """C code that exports the offsets of a rail's cells.
+    """C code that exports the offsets of an approximation's cells.
 
     Args:
         header: name of the header.
         base: prefix of the type names.
-        cells: all members of the rail's struct.
+        cells: all members of the approximation's struct.
     """
-    rail = f"{base}_rail"
+    approximation = f"{base}_approximation"
     places = "".join(
-        f"    offsetof({rail}, {cell}), sizeof((({rail} *)0)->{cell}),\n" for cell in cells
+        f"    offsetof({approximation}, {cell}), sizeof((({approximation} *)0)->{cell}),\n"
+        for cell in cells
     )
     return f"""#include <stddef.h>
 #include "{header}"

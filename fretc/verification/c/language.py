@@ -35,7 +35,7 @@ def checked(given: SourceText, requirements: Sequence[FormalizedRequirement]) ->
     own, own_header = _written(given, own_rules)
     same(LEXIS.tokens(given.header), LEXIS.tokens(own_header))
     prefix = base(given)
-    cells = _members(own_header, f"{prefix}_rail")
+    cells = _members(own_header, f"{prefix}_approximation")
     inputs = _members(own_header, f"{prefix}_inputs")
     form = check_layout(given.text, own, prefix, cells, inputs)
     outcomes = tuple(name for name, _ in _OUTCOMES.findall(own_header))

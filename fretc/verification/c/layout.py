@@ -3,7 +3,7 @@
 The header, the types and the functions that lead to the step must equal those of fretc token for
 token. The body of the step and the initial state may differ, within statements that assign an
 expression to one cell, signal or local truth value. Such statements have no call, loop, pointer or
-address, so they access only the memory of the rail, and a step depends on nothing else.
+address, so they access only the memory of the approximation, and a step depends on nothing else.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ expression (`--`, `>>=`) are one token, too, so that they are not read as two ha
 _SIGNS = frozenset("! & | && || < <= > >= == != + - ? : ( ) true false".split())
 _KEPT = frozenset(
     """
-    rail now outcomes possible reading
+    approximation now outcomes possible reading
     const bool uint32_t UINT32_C true false fretc_reading
     """.split()
 )
@@ -61,7 +61,7 @@ def check_layout(
         text: text of the file.
         written: text that fretc writes for the same requirements.
         base: prefix of the function names.
-        cells: members of the rail's struct.
+        cells: members of the approximation's struct.
         inputs: members of the inputs' struct.
 
     Raises:
@@ -88,12 +88,12 @@ def without_comments(text: str) -> str:
 def _statements(body: Tokens) -> Iterator[Tokens]:
     """Statements up to each semicolon or brace; an `else` belongs to the preceding brace."""
     start, depth = 0, 0
-    for place, token in enumerate(body):
+    for index, token in enumerate(body):
         depth += {"(": 1, ")": -1}.get(token, 0)
-        after = body[place + 1] if place + 1 < len(body) else ""
+        after = body[index + 1] if index + 1 < len(body) else ""
         if (token in (";", "{") and depth == 0) or (token == "}" and after != "else"):
-            yield body[start : place + 1]
-            start = place + 1
+            yield body[start : index + 1]
+            start = index + 1
     if start < len(body):
         raise strange(body[start:])
 
@@ -115,7 +115,7 @@ def _same_cells(cleared: Tokens, own: Tokens) -> None:
 def _is_first_value(statement: Tokens) -> bool:
     """Whether the statement assigns a constant to a cell."""
     match statement:
-        case ("rail", "->", name, "=", *value, ";"):
+        case ("approximation", "->", name, "=", *value, ";"):
             return bool(NAME.fullmatch(name)) and is_constant(value)
         case _:
             return False
@@ -124,7 +124,7 @@ def _is_first_value(statement: Tokens) -> bool:
 class _CStep(BlockFlow):
     """The body of a step, read statement by statement."""
 
-    cell, literal = ("rail", "->"), ("now", "->")
+    cell, literal = ("approximation", "->"), ("now", "->")
     brackets = ("(", ")")
     signs, kept = _SIGNS, _KEPT
     _outcome = ""
@@ -166,7 +166,7 @@ class _CStep(BlockFlow):
             ):
                 self.change([self._outcome], self.names(value, statement))
                 return True
-            case ("rail", _, _, "=", *value, ";"):
+            case ("approximation", _, _, "=", *value, ";"):
                 return self.give(statement[:3], value, statement)
             case ("const", "bool", name, "=", *value, ";"):
                 return self.declare(name, value, statement)

@@ -22,8 +22,8 @@ from __future__ import annotations
 from collections.abc import Hashable, Sequence
 from typing import Any, NamedTuple, Protocol
 
-from fretc.verification.compiled.readings import PythonRail
-from fretc.verification.monitor.rails import Letter
+from fretc.verification.compiled.readings import PythonApproximation
+from fretc.verification.monitor.approximations import Letter
 
 
 class DelayLine(NamedTuple):
@@ -44,7 +44,7 @@ class FreeLetter(NamedTuple):
 
 
 class Delayed(Protocol):
-    """A rail of a monitor without the bits of its delay lines."""
+    """An approximation of a monitor without the bits of its delay lines."""
 
     @property
     def lines(self) -> tuple[DelayLine, ...]:
@@ -92,29 +92,29 @@ class FreeWindow:
 
 
 class PythonDelayed:
-    """A rail of the monitor in Python with free windows."""
+    """An approximation of the monitor in Python with free windows."""
 
-    def __init__(self, rail: PythonRail, lines: Sequence[DelayLine]) -> None:
-        """The rail before the first tick.
+    def __init__(self, approximation: PythonApproximation, lines: Sequence[DelayLine]) -> None:
+        """The approximation before the first tick.
 
         Args:
-            rail: the rail, whose windows are replaced.
+            approximation: the approximation, whose windows are replaced.
             lines: delay lines of the other monitor, as many as there are windows.
         """
-        self._rail = rail
+        self._approximation = approximation
         self._windows = [
             FreeWindow(window.lo, window.hi, guarded=line.guarded)
-            for window, line in zip(rail.windows(), lines, strict=True)
+            for window, line in zip(approximation.windows(), lines, strict=True)
         ]
-        rail.replace_windows(self._windows)
+        approximation.replace_windows(self._windows)
 
     def save(self) -> Hashable:
         """All cells except the bits of windows."""
-        return self._rail.save()
+        return self._approximation.save()
 
     def step(self, state: Any, letter: FreeLetter) -> tuple[object, ...]:
         """The reading after a tick, and the written bits."""
         for window, oldest in zip(self._windows, letter.oldest, strict=True):
             window.oldest = oldest
-        told = self._rail.step(state, letter.values)
+        told = self._approximation.step(state, letter.values)
         return (*told, *(window.written for window in self._windows))

@@ -22,7 +22,7 @@ class Dependencies:
     """Dependencies of the readings of one requirement."""
 
     cells: frozenset[str]
-    """Cells of a rail, among other names."""
+    """Cells of an approximation, among other names."""
     inputs: frozenset[int]
     """Indices of propositions."""
 
@@ -45,7 +45,7 @@ class CheckedLayout:
             for name in self.sources.get(waiting.pop(), frozenset()) - reached:
                 reached.add(name)
                 waiting.append(name)
-        inputs = (place for literal, place in self.literals.items() if literal in reached)
+        inputs = (index for literal, index in self.literals.items() if literal in reached)
         return Dependencies(frozenset(reached), frozenset(inputs))
 
 
@@ -54,7 +54,7 @@ class ExpressionForms:
     """Allowed elements of an expression, besides local truth values and numbers."""
 
     members: Mapping[tuple[str, str], Collection[str]]
-    """Prefixes of members, such as `rail` and `->`; and the members."""
+    """Prefixes of members, such as `approximation` and `->`; and the members."""
     signs: Collection[str]
     kept: Collection[str] = ()
     """Words that are not names of local truth values."""
@@ -94,19 +94,19 @@ class Flow:
         Raises:
             UnexpectedLayoutError: the expression contains anything else.
         """
-        names, place, grammar = set[str](), 0, self.grammar
-        while place < len(value):
-            name, after = (*value[place : place + 2], "")[:2]
-            if grammar.is_member(value[place : place + 3]):
-                names.add(value[place + 2])
-                place += 3
+        names, index, grammar = set[str](), 0, self.grammar
+        while index < len(value):
+            name, after = (*value[index : index + 2], "")[:2]
+            if grammar.is_member(value[index : index + 3]):
+                names.add(value[index + 2])
+                index += 3
             elif name in self._local and after not in _CALLS:
                 names.add(name)
-                place += 1
-            elif name in _JOINS and not _is_value(value[place - 1 : place]):
+                index += 1
+            elif name in _JOINS and not _is_value(value[index - 1 : index]):
                 raise strange(statement)
             elif name in grammar.signs or NUMBER.fullmatch(name):
-                place += 1
+                index += 1
             else:
                 raise strange(statement)
         return frozenset(names)
@@ -185,7 +185,7 @@ class BlockFlow(Flow):
 
         Args:
             known: statements that fretc writes.
-            cells: all cells of a rail.
+            cells: all cells of an approximation.
             literals: all literals.
         """
         self.written = known

@@ -19,10 +19,10 @@ from typing import Any, NamedTuple
 from compiler.formalization.letters import Valuation
 from fretc.verification.compiled.delays import DelayLine, FreeLetter
 from fretc.verification.compiled.plan import RequirementPosition
-from fretc.verification.compiled.readings import VERDICTS, RailReading, judged
+from fretc.verification.compiled.readings import VERDICTS, ApproximationReading, judged
 from fretc.verification.compiled.tools import Binary, ToolError
+from fretc.verification.monitor.approximations import Letter
 from fretc.verification.monitor.equivalence import Judgement
-from fretc.verification.monitor.rails import Letter
 from fretish.classes.frozen import dataclass
 from monitors.kernel.verdicts import Truth
 
@@ -42,7 +42,7 @@ class LibraryFile:
     base: str
     """Prefix of the function names."""
     cells: tuple[str, ...]
-    """All cells of a rail, in the order of the layout."""
+    """All cells of an approximation, in the order of the layout."""
 
     @contextmanager
     def running(self, plan: RequirementPosition) -> Iterator[Library]:
@@ -102,12 +102,12 @@ class Library:
         kept = [each for each in needed if not is_place(each) and each not in names]
         self.others = _joined([places[name] for name in kept])
         self._is_original = plan.is_original
-        self._rails = (certain, possible)
+        self._approximations = (certain, possible)
         self._inputs = (ctypes.c_uint8 * inputs)()
         self._outcomes = (ctypes.c_uint8 * outcomes)()
         self._state = (ctypes.c_uint8 * size)()
         ctypes.memset(self._state, _GARBAGE, size)
-        self.order = [(i, place) for i, place in enumerate(plan.inputs) if place >= 0]
+        self.order = [(i, index) for i, index in enumerate(plan.inputs) if index >= 0]
         self._at = plan.outcome * outcome
         self._step = getattr(library, f"{file.base}_step")
         self._step.restype = None
@@ -117,56 +117,60 @@ class Library:
         self._starts = self.save(0), self.save(1)
 
     def judging(self) -> CompiledMonitorMachine:
-        """A machine of both rails, before the first tick."""
+        """A machine of both approximations, before the first tick."""
         self._restart()
         return CompiledMonitorMachine(self)
 
-    def rail(self, letters: Sequence[Letter], *, doubt: bool) -> CompiledRail:
-        """One of the rails, before the first tick."""
+    def approximation(
+        self, letters: Sequence[Letter], *, is_possible: bool
+    ) -> CompiledApproximation:
+        """One of the approximations, before the first tick."""
         self._restart()
-        return CompiledRail(self, doubt=doubt)
+        return CompiledApproximation(self, is_possible=is_possible)
 
-    def delayed(self, *, doubt: bool) -> CompiledDelayed | None:
-        """A rail without the bits of its delay lines, before the first tick.
+    def delayed(self, *, is_possible: bool) -> CompiledDelayed | None:
+        """An approximation without the bits of its delay lines, before the first tick.
 
         None: there are none, or the text is not the one that fretc writes.
         """
         if not self.rings or not self._is_original:
             return None
         self._restart()
-        return CompiledDelayed(self, doubt=doubt)
+        return CompiledDelayed(self, is_possible=is_possible)
 
     def _restart(self) -> None:
-        for rail, start in enumerate(self._starts):
-            self.load(rail, start)
+        for approximation, start in enumerate(self._starts):
+            self.load(approximation, start)
 
-    def save(self, rail: int) -> bytes:
-        """Cells of a rail: 0 the certain one, 1 the possible one."""
-        return self.read(rail, self._cells)
+    def save(self, approximation: int) -> bytes:
+        """Cells of an approximation: 0 the certain one, 1 the possible one."""
+        return self.read(approximation, self._cells)
 
-    def load(self, rail: int, saved: bytes) -> None:
+    def load(self, approximation: int, saved: bytes) -> None:
         """Restore saved cells."""
-        self.write(rail, self._cells, saved)
+        self.write(approximation, self._cells, saved)
 
-    def read(self, rail: int, places: Sequence[tuple[int, int]]) -> bytes:
-        """Bytes of a rail at some offsets."""
-        start = ctypes.addressof(self._state) + self._rails[rail]
+    def read(self, approximation: int, places: Sequence[tuple[int, int]]) -> bytes:
+        """Bytes of an approximation at some offsets."""
+        start = ctypes.addressof(self._state) + self._approximations[approximation]
         return b"".join([ctypes.string_at(start + at, size) for at, size in places])
 
-    def write(self, rail: int, places: Sequence[tuple[int, int]], saved: bytes) -> None:
-        """Replace bytes of a rail."""
-        start, done = ctypes.addressof(self._state) + self._rails[rail], 0
+    def write(self, approximation: int, places: Sequence[tuple[int, int]], saved: bytes) -> None:
+        """Replace bytes of an approximation."""
+        start, done = ctypes.addressof(self._state) + self._approximations[approximation], 0
         for at, size in places:
             ctypes.memmove(start + at, saved[done : done + size], size)
             done += size
 
-    def step(self, letter: Sequence[Truth]) -> tuple[RailReading, RailReading, tuple[object, ...]]:
+    def step(
+        self, letter: Sequence[Truth]
+    ) -> tuple[ApproximationReading, ApproximationReading, tuple[object, ...]]:
         """Both readings after a tick, and the verdicts from them.
 
         An input without a value is false.
         """
-        for i, place in self.order:
-            self._inputs[place] = _CODES[letter[i]]
+        for i, index in self.order:
+            self._inputs[index] = _CODES[letter[i]]
         ctypes.memset(self._outcomes, _GARBAGE, len(self._outcomes))
         self._step(*self._arguments)
         values = _OUTCOME.unpack_from(self._outcomes, self._at)
@@ -175,11 +179,11 @@ class Library:
             VERDICTS[verdict] if verdict < len(VERDICTS) else f"verdict {verdict}",
             *(_TRUTHS[each] if each < len(_TRUTHS) else f"truth value {each}" for each in truths),
         )
-        return RailReading(*values[:8]), RailReading(*values[8:16]), told
+        return ApproximationReading(*values[:8]), ApproximationReading(*values[8:16]), told
 
 
 class RingOffsets(NamedTuple):
-    """Memory of a delay line in a rail: offsets and sizes in bytes."""
+    """Memory of a delay line in an approximation: offsets and sizes in bytes."""
 
     bits: tuple[int, int]
     place: tuple[int, int]
@@ -199,30 +203,30 @@ def _clear(ring: str) -> str:
 
 def _joined(places: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:
     """Offsets and sizes in order, with adjacent ones joined."""
-    found: list[tuple[int, int]] = []
+    ranges: list[tuple[int, int]] = []
     for at, size in sorted(places):
-        if found and sum(found[-1]) == at:
-            found[-1] = found[-1][0], found[-1][1] + size
+        if ranges and sum(ranges[-1]) == at:
+            ranges[-1] = ranges[-1][0], ranges[-1][1] + size
         else:
-            found.append((at, size))
-    return found
+            ranges.append((at, size))
+    return ranges
 
 
 class CompiledMonitorMachine:
-    """A compiled monitor with known propositions, with both of its rails."""
+    """A compiled monitor with known propositions, with both of its approximations."""
 
     def __init__(self, library: Library) -> None:
         """The machine in the library's present state."""
         self._library = library
 
     def save(self) -> Hashable:
-        """The cells of both rails."""
+        """The cells of both approximations."""
         return self._library.save(0), self._library.save(1)
 
     def load(self, state: Any) -> None:
         """Restore a state."""
-        for rail, cells in enumerate(state):
-            self._library.load(rail, cells)
+        for approximation, cells in enumerate(state):
+            self._library.load(approximation, cells)
 
     def step(self, letter: Valuation) -> Judgement:
         """The verdict after a tick, and FRET's finite verdict."""
@@ -230,33 +234,33 @@ class CompiledMonitorMachine:
         return str(verdict), finite is True
 
 
-class CompiledRail:
-    """One rail of a compiled monitor; the state of the other rail is arbitrary."""
+class CompiledApproximation:
+    """One approximation of a compiled monitor; the state of the other one is arbitrary."""
 
-    def __init__(self, library: Library, *, doubt: bool) -> None:
-        """The rail in its present state; with `doubt` the possible one."""
-        self._library, self._rail = library, int(doubt)
+    def __init__(self, library: Library, *, is_possible: bool) -> None:
+        """The approximation in its present state; with `is_possible` the possible one."""
+        self._library, self._approximation = library, int(is_possible)
 
     def save(self) -> bytes:
         """Its cells."""
-        return self._library.save(self._rail)
+        return self._library.save(self._approximation)
 
     def step(self, state: bytes, letter: Letter) -> tuple[object, ...]:
-        """The reading after a tick, and whether the verdict follows from both rails."""
-        self._library.load(self._rail, state)
+        """The reading after a tick, and whether the verdict follows from both approximations."""
+        self._library.load(self._approximation, state)
         *readings, told = self._library.step(letter)
-        return (*readings[self._rail], told == judged(*readings))
+        return (*readings[self._approximation], told == judged(*readings))
 
 
 class CompiledDelayed:
-    """One rail of a compiled monitor with arbitrary bits in its delay lines, at index 0."""
+    """An approximation of a compiled monitor with arbitrary bits in its delay lines, at index 0."""
 
-    def __init__(self, library: Library, *, doubt: bool) -> None:
-        """The rail in its present state; with `doubt` the possible one."""
-        self._library, self._rail = library, int(doubt)
-        start = library.save(self._rail)
+    def __init__(self, library: Library, *, is_possible: bool) -> None:
+        """The approximation in its present state; with `is_possible` the possible one."""
+        self._library, self._approximation = library, int(is_possible)
+        start = library.save(self._approximation)
         self._lengths = [self._length(ring) for ring in library.rings]
-        library.load(self._rail, start)
+        library.load(self._approximation, start)
 
     @property
     def lines(self) -> tuple[DelayLine, ...]:
@@ -266,15 +270,15 @@ class CompiledDelayed:
 
     def save(self) -> bytes:
         """All cells except the delay lines."""
-        return self._library.read(self._rail, self._library.others)
+        return self._library.read(self._approximation, self._library.others)
 
     def step(self, state: bytes, letter: FreeLetter) -> tuple[object, ...]:
         """The reading, whether the verdict follows, and the written bits; or an error."""
-        library, rail = self._library, self._rail
-        library.write(rail, library.others, state)
+        library, approximation = self._library, self._approximation
+        library.write(approximation, library.others, state)
         for ring, oldest in zip(library.rings, letter.oldest, strict=True):
-            library.write(rail, [ring.bits], (b"\xff" if oldest else b"\0") * ring.bits[1])
-            library.write(rail, [ring.place], bytes(ring.place[1]))
+            library.write(approximation, [ring.bits], (b"\xff" if oldest else b"\0") * ring.bits[1])
+            library.write(approximation, [ring.place], bytes(ring.place[1]))
         *readings, told = library.step(letter.values)
         written = [
             self._written(ring, length, oldest)
@@ -282,23 +286,23 @@ class CompiledDelayed:
                 library.rings, self._lengths, letter.oldest, strict=True
             )
         ]
-        return (*readings[rail], told == judged(*readings), *written)
+        return (*readings[approximation], told == judged(*readings), *written)
 
     def _written(self, ring: RingOffsets, length: int, oldest: bool) -> bool | None:
         """The bit that replaced the oldest one; None if anything else has changed."""
-        bits = int.from_bytes(self._library.read(self._rail, [ring.bits]), sys.byteorder)
+        bits = int.from_bytes(self._library.read(self._approximation, [ring.bits]), sys.byteorder)
         others = (1 << 8 * ring.bits[1]) - 2 if oldest else 0
         is_moved = self._place(ring) == (1 if length > 1 else 0)
         return bool(bits & 1) if is_moved and bits & ~1 == others else None
 
     def _place(self, ring: RingOffsets) -> int:
-        return int.from_bytes(self._library.read(self._rail, [ring.place]), sys.byteorder)
+        return int.from_bytes(self._library.read(self._approximation, [ring.place]), sys.byteorder)
 
     def _length(self, ring: RingOffsets) -> int:
         """Ticks until the index returns to 0, increasing by one at each; 0: it does not."""
         library = self._library
         letter, capacity = (False,) * len(library.order), 8 * ring.bits[1]
-        library.write(self._rail, [ring.place], bytes(ring.place[1]))
+        library.write(self._approximation, [ring.place], bytes(ring.place[1]))
         for tick in range(1, capacity + 1):
             library.step(letter)
             place = self._place(ring)

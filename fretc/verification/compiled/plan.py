@@ -12,8 +12,8 @@ from compiler.formalization.letters import atoms_of
 from fretc.verification.compiled.delays import Delayed
 from fretc.verification.compiled.flow import CheckedLayout
 from fretc.verification.compiled.text import UnexpectedLayoutError
+from fretc.verification.monitor.approximations import Letter, Stepping
 from fretc.verification.monitor.equivalence import Machine
-from fretc.verification.monitor.rails import Letter, Stepping
 from fretc.verification.monitor.verifying import NotAMonitorError
 from fretish.classes.frozen import dataclass
 
@@ -61,7 +61,7 @@ class ParsedSource:
     """Names of the outcomes in the text."""
     form: CheckedLayout
     cells: tuple[str, ...]
-    """All cells of a rail."""
+    """All cells of an approximation."""
     inputs: tuple[str, ...]
     """Names of the propositions in the text, in their order."""
     is_original: bool = False
@@ -77,22 +77,22 @@ class ParsedSource:
         ids = [each.id for each in self.requirements]
         if requirement.id not in ids:
             raise UnexpectedLayoutError("the monitor is for other requirements")
-        place, own = ids.index(requirement.id), atoms(requirement)
-        part = self.form.part(self.outcomes[place])
+        index, own = ids.index(requirement.id), atoms(requirement)
+        part = self.form.part(self.outcomes[index])
         names = tuple(dict.fromkeys(name for each in self.requirements for name in each.watched))
         if not {names[i] for i in part.inputs} <= {*own}:
             raise UnexpectedLayoutError(
                 f"{requirement.id} depends on names that its sentence does not mention"
             )
         places = tuple(names.index(name) if name in names else -1 for name in own)
-        return RequirementPosition(part.cells, place, places, len(names), self.is_original)
+        return RequirementPosition(part.cells, index, places, len(names), self.is_original)
 
 
 class Machines(Protocol):
     """A running monitor, seen as one requirement."""
 
-    def delayed(self, *, doubt: bool) -> Delayed | None:
-        """One of its rails without delay lines, before the first tick.
+    def delayed(self, *, is_possible: bool) -> Delayed | None:
+        """One of its approximations without delay lines, before the first tick.
 
         None: it has no delay lines, or their behaviour is unknown.
         """
@@ -100,12 +100,12 @@ class Machines(Protocol):
     def judging(self) -> Machine:
         """Machine of both verdicts, before the first tick."""
 
-    def rail(self, letters: Sequence[Letter], *, doubt: bool) -> Stepping:
-        """One of its rails, before the first tick.
+    def approximation(self, letters: Sequence[Letter], *, is_possible: bool) -> Stepping:
+        """One of its approximations, before the first tick.
 
         Args:
             letters: all valuations of a tick.
-            doubt: whether it is the rail of the possible value.
+            is_possible: whether it is the approximation of the possible value.
         """
 
 

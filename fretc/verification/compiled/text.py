@@ -58,22 +58,22 @@ class Lexis:
             raise UnexpectedLayoutError(
                 f"line {_line(text, moving.start())} contains a hidden line break"
             )
-        found, place, line = list[str](), 0, 1
-        while place < len(text):
-            match = self.token.match(text, place)
+        tokens, start, line = list[str](), 0, 1
+        while start < len(text):
+            match = self.token.match(text, start)
             if match is None:
-                raise UnexpectedLayoutError(f"line {line} has `{text[place : place + 1]!a}`")
+                raise UnexpectedLayoutError(f"line {line} has `{text[start : start + 1]!a}`")
             if match["gap"] is None:
-                found.append(Token.at(match[0], line))
-            elif "\n" in match[0] and found and found[-1] in self.line_bound:
-                found.append(Token.at("\n", line))
-            place = match.end()
+                tokens.append(Token.at(match[0], line))
+            elif "\n" in match[0] and tokens and tokens[-1] in self.line_bound:
+                tokens.append(Token.at("\n", line))
+            start = match.end()
             line += match[0].count("\n")
-        return tuple(found)
+        return tuple(tokens)
 
 
-def _line(text: str, place: int) -> int:
-    return text.count("\n", 0, place) + 1
+def _line(text: str, index: int) -> int:
+    return text.count("\n", 0, index) + 1
 
 
 def strange(statement: Sequence[str]) -> UnexpectedLayoutError:
@@ -88,8 +88,8 @@ def same(given: Tokens, written: Tokens) -> None:
     if given == written:
         return
     pairs = zip(given, written, strict=False)
-    place = next((i for i, (a, b) in enumerate(pairs) if a != b), min(len(given), len(written)))
-    raise strange(given[max(0, place - 3) : place + 3])
+    index = next((i for i, (a, b) in enumerate(pairs) if a != b), min(len(given), len(written)))
+    raise strange(given[max(0, index - 3) : index + 3])
 
 
 def split(text: Tokens, functions: Sequence[Tokens]) -> tuple[Tokens, list[Tokens]]:
@@ -102,14 +102,14 @@ def split(text: Tokens, functions: Sequence[Tokens]) -> tuple[Tokens, list[Token
     Raises:
         UnexpectedLayoutError: a function is missing.
     """
-    outside, bodies, place = list[str](), list[Tokens](), 0
+    outside, bodies, index = list[str](), list[Tokens](), 0
     for head in functions:
-        start = text.index("{", _place(text, head, place)) + 1
+        start = text.index("{", _place(text, head, index)) + 1
         end = _end(text, start)
-        outside += text[place:start]
+        outside += text[index:start]
         bodies.append(text[start : end - 1])
-        place = end - 1
-    return (*outside, *text[place:]), bodies
+        index = end - 1
+    return (*outside, *text[index:]), bodies
 
 
 def bodies(
@@ -126,9 +126,9 @@ def bodies(
 
 
 def _place(text: Tokens, head: Tokens, start: int) -> int:
-    for place in range(start, len(text)):
-        if text[place : place + len(head)] == head and "{" in text[place:]:
-            return place
+    for index in range(start, len(text)):
+        if text[index : index + len(head)] == head and "{" in text[index:]:
+            return index
     raise UnexpectedLayoutError(f"there is no `{' '.join(head)}`")
 
 
@@ -144,11 +144,11 @@ def _end(text: Tokens, start: int) -> int:
 def end_of(text: Tokens, start: int, end: str) -> int:
     """Index of the next such token outside brackets; else the end of the text."""
     depth = 0
-    for place in range(start, len(text)):
-        token = text[place]
+    for index in range(start, len(text)):
+        token = text[index]
         depth += (token in _OPENING) - (token in _CLOSING)
         if token == end and depth == 0:
-            return place
+            return index
     return len(text)
 
 

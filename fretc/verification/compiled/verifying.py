@@ -2,8 +2,8 @@
 
 The layout of the text guarantees that a step depends only on its cells and inputs. The monitor is
 compiled or run, and explored in two comparisons, each until no new pair of states appears: with the
-counter automaton of the sentence (both verdicts, known values); and, rail by rail, with the monitor
-in Python (all values of a reading, also with unknown inputs).
+counter automaton of the sentence (both verdicts, known values); and, for each approximation, with
+the monitor in Python (all values of a reading, also with unknown inputs).
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ from fretc.verification.compiled.plan import (
     SourceText,
     atoms,
 )
-from fretc.verification.compiled.readings import NAMES, PythonJudging, PythonRail
+from fretc.verification.compiled.readings import NAMES, PythonApproximation, PythonJudging
 from fretc.verification.compiled.text import UnexpectedLayoutError
 from fretc.verification.compiled.tools import ToolError
 from fretc.verification.engines.sandbox import CallLimits, NoResult, SandboxSession
-from fretc.verification.monitor import rails
+from fretc.verification.monitor import approximations
 from fretc.verification.monitor.equivalence import DifferingTrace
 from fretc.verification.monitor.verifying import MOST_STATES, judged_wrongly, lock_step, noted
 from monitors.loading import load
@@ -152,16 +152,16 @@ def _without_delays(
     """Proved if both monitors are equal for arbitrary bits in their delay lines.
 
     Then each verdict of the text is that of the monitor in Python, because both derive it from both
-    rails; so the monitor in Python is compared with the automaton of the sentence. Not checked if
-    that comparison is too large. None: unknown, so that all states must be compared.
+    approximations; so the monitor in Python is compared with the automaton of the sentence. Not
+    checked if that comparison is too large. None: unknown, so that all states must be compared.
     """
     names, monitor, states = atoms(requirement), load("reference", python.text(requirement)), 0
-    if len(names) > rails.MOST_PROPOSITIONS:
+    if len(names) > approximations.MOST_PROPOSITIONS:
         return None
-    for doubt in (False, True):
+    for is_possible in (False, True):
         left, right = (
-            machines.delayed(doubt=doubt),
-            PythonRail(monitor, requirement, names, doubt=doubt),
+            machines.delayed(is_possible=is_possible),
+            PythonApproximation(monitor, requirement, names, is_possible=is_possible),
         )
         windows = right.windows()
         if left is None or [line.length for line in left.lines] != [
@@ -173,14 +173,16 @@ def _without_delays(
             for values in _letters(requirement, names)
             for oldest in product((False, True), repeat=len(windows))
         ]
-        further = tuple(f"delay line {place}" for place in range(len(windows)))
+        further = tuple(f"delay line {index}" for index in range(len(windows)))
         free = PythonDelayed(right, left.lines)
-        result = rails.in_lock_step(left, free, letters, limit, (*NAMES, *further))
-        if not isinstance(result, rails.Equivalent):
+        result = approximations.in_lock_step(left, free, letters, limit, (*NAMES, *further))
+        if not isinstance(result, approximations.Equivalent):
             return None
         states += result.states
         ticks = _PERIODS * max(line.length for line in left.lines)
-        if not _agree(requirement, machines, _letters(requirement, names), ticks, doubt=doubt):
+        if not _agree(
+            requirement, machines, _letters(requirement, names), ticks, is_possible=is_possible
+        ):
             return None
     judged = lock_step(requirement, PythonJudging(monitor, names), names, limit)
     if isinstance(judged, str):
@@ -201,15 +203,15 @@ _PERIODS = 4
 def _agree(
     requirement: FormalizedRequirement,
     machines: Machines,
-    letters: Sequence[rails.Letter],
+    letters: Sequence[approximations.Letter],
     ticks: int,
     *,
-    doubt: bool,
+    is_possible: bool,
 ) -> bool:
     """Whether both monitors, with all their bits, agree on a random run."""
     monitor, draw = load("reference", python.text(requirement)), Random(0)
-    left = machines.rail(letters, doubt=doubt)
-    right = PythonRail(monitor, requirement, atoms(requirement), doubt=doubt)
+    left = machines.approximation(letters, is_possible=is_possible)
+    right = PythonApproximation(monitor, requirement, atoms(requirement), is_possible=is_possible)
     first, second = left.save(), right.save()
     for _ in range(ticks):
         letter = draw.choice(letters)
@@ -219,7 +221,9 @@ def _agree(
     return True
 
 
-def _letters(requirement: FormalizedRequirement, names: Sequence[str]) -> Sequence[rails.Letter]:
+def _letters(
+    requirement: FormalizedRequirement, names: Sequence[str]
+) -> Sequence[approximations.Letter]:
     """Possible values of a tick, including unknown ones."""
     every = tuple(product((False, True, None), repeat=len(names)))
     return only_possible(every, names, impossible_combinations(requirement))
@@ -228,8 +232,8 @@ def _letters(requirement: FormalizedRequirement, names: Sequence[str]) -> Sequen
 def _read(requirement: FormalizedRequirement, machines: Machines, limit: int) -> int | ClaimOutcome:
     """Number of states whose readings equal those of the monitor in Python, or the failure."""
     names = atoms(requirement)
-    if len(names) > rails.MOST_PROPOSITIONS:
-        most = rails.MOST_PROPOSITIONS
+    if len(names) > approximations.MOST_PROPOSITIONS:
+        most = approximations.MOST_PROPOSITIONS
         return not_checked(
             f"{len(names)} propositions, more than {most}, are too many to check unknown values"
         )
@@ -237,25 +241,28 @@ def _read(requirement: FormalizedRequirement, machines: Machines, limit: int) ->
     monitor, states = load("reference", python.text(requirement)), 0
 
     def compare(
-        more: Sequence[Exclusion], *, doubt: bool
-    ) -> rails.Equivalent | rails.Distinguished | None:
+        more: Sequence[Exclusion], *, is_possible: bool
+    ) -> approximations.Equivalent | approximations.Distinguished | None:
         letters = only_possible(every, names, more)
-        left = machines.rail(letters, doubt=doubt)
-        right = PythonRail(monitor, requirement, names, doubt=doubt)
+        left = machines.approximation(letters, is_possible=is_possible)
+        right = PythonApproximation(monitor, requirement, names, is_possible=is_possible)
         most = min(limit, MOST_SEARCHED) if more else limit
-        return rails.in_lock_step(left, right, letters, most, NAMES)
+        return approximations.in_lock_step(left, right, letters, most, NAMES)
 
-    for doubt in (False, True):
+    for is_possible in (False, True):
         result, note = with_numeric_counterexample(
-            requirement, names, rails.Distinguished, partial(compare, doubt=doubt)
+            requirement,
+            names,
+            approximations.Distinguished,
+            partial(compare, is_possible=is_possible),
         )
         match result:
             case None:
                 return not_checked(f"with unknown values there are more than {limit} states")
-            case rails.Distinguished(word, signal):
-                which = "possible" if doubt else "certain"
+            case approximations.Distinguished(word, signal):
+                which = "possible" if is_possible else "certain"
                 fault = f"the monitor in Python has another {signal} in `{which}` on a trace"
                 return refuted(f"{fault}{noted(note)}", ClaimTrace(names, word))
-            case rails.Equivalent(count):
+            case approximations.Equivalent(count):
                 states += count
     return states

@@ -79,7 +79,7 @@ def answer(path: str, asked: EvaInput, limits: CallLimits) -> tuple[ClaimOutcome
             _write(asked, Path(folder))
             for machine in MACHINES:
                 whole = [path, *options, f"-machdep={machine}"]
-                reason = _doubt(whole, asked, Path(folder), limits)
+                reason = _reason_unproved(whole, asked, Path(folder), limits)
                 if reason is not None:
                     return not_checked(f"{reason} (machine {machine})"), name
         except OSError as error:
@@ -100,7 +100,9 @@ def _write(asked: EvaInput, folder: Path) -> None:
         (folder / name).write_text(text, encoding="utf-8")
 
 
-def _doubt(command: list[str], asked: EvaInput, folder: Path, limits: CallLimits) -> str | None:
+def _reason_unproved(
+    command: list[str], asked: EvaInput, folder: Path, limits: CallLimits
+) -> str | None:
     """Why a run of Eva proves nothing; None: it proves everything."""
     (folder / _REPORT).unlink(missing_ok=True)
     whole = [*command, _TEXT, _DRIVER, "-then", "-no-report", f"-report-csv={_REPORT}"]
@@ -128,8 +130,8 @@ def _unproved(report: str, asked: EvaInput) -> Iterator[str]:
         number = int(line)
         own = (file, function, kind) == (_DRIVER, asked.entry, "user assertion")
         if not (own and status == "Valid" and number in missing):
-            place = _AFTER if file == _DRIVER else f"at line {number}"
-            yield f"Eva finds no proof of `{words}` {place} ({kind}: {status.lower()})"
+            where = _AFTER if file == _DRIVER else f"at line {number}"
+            yield f"Eva finds no proof of `{words}` {where} ({kind}: {status.lower()})"
         missing.discard(number)
     if missing:
         yield f"Eva gives no result for {len(missing)} assertions"

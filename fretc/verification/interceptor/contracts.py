@@ -153,8 +153,8 @@ def _of_a_stop(options: Options) -> Iterator[Contract]:
 
 def _short_hold(m: ContractStep) -> bool:
     if m.event == RING:
-        return m.before.owed > 0 and m.output != "zero"
-    return m.after.owed > 0 and m.output not in ("nothing", "zero")
+        return m.before.hold_pending > 0 and m.output != "zero"
+    return m.after.hold_pending > 0 and m.output not in ("nothing", "zero")
 
 
 def _silence(name: str, timeout: int) -> Callable[[ContractStep], bool]:
@@ -180,7 +180,7 @@ def _of_the_output(options: Options) -> Iterator[Contract]:
             "at a tick without a reason to stand the last command is published",
             lambda m: (
                 m.event == RING
-                and not stands(m.after._replace(owed=m.before.owed), options)
+                and not stands(m.after._replace(hold_pending=m.before.hold_pending), options)
                 and m.output != ("zero" if m.after.last is None else "last")
             ),
         )

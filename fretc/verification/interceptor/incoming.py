@@ -32,7 +32,7 @@ class EventHistory(NamedTuple):
     requested: bool
     """Whether the last message of the safety function requests a stop."""
     ever: bool
-    owed: int
+    hold_pending: int
     """Ticks for which zero must still be published after the last request."""
     stop: int
     """Ticks since the last message of the safety function, at most the timeout; likewise below."""
@@ -60,7 +60,7 @@ def first(options: Options) -> EventHistory:
     return EventHistory(
         requested=False,
         ever=False,
-        owed=0,
+        hold_pending=0,
         stop=options.stop_timeout,
         scan=options.scan_timeout,
         command=options.command_timeout,
@@ -72,7 +72,7 @@ def after(history: EventHistory, event: str, command: object, options: Options) 
     """The history after one more event; `command` belongs to `COMMAND`."""
     match event:
         case "a stop is requested":
-            return history._replace(requested=True, ever=True, owed=options.hold, stop=0)
+            return history._replace(requested=True, ever=True, hold_pending=options.hold, stop=0)
         case "no stop is requested":
             return history._replace(requested=False, stop=0)
         case "a command comes":
@@ -82,7 +82,7 @@ def after(history: EventHistory, event: str, command: object, options: Options) 
     if options.event_driven:
         return history
     return history._replace(
-        owed=max(history.owed - 1, 0),
+        hold_pending=max(history.hold_pending - 1, 0),
         stop=min(history.stop + 1, options.stop_timeout),
         scan=min(history.scan + 1, options.scan_timeout),
         command=min(history.command + 1, options.command_timeout),
@@ -93,7 +93,7 @@ def stands(history: EventHistory, options: Options) -> bool:
     """Whether there is a reason for zero: a stop, an earlier stop, or silence."""
     return (
         history.requested
-        or history.owed > 0
+        or history.hold_pending > 0
         or (options.latching and history.ever)
         or history.stop >= options.stop_timeout > 0
         or history.scan >= options.scan_timeout > 0

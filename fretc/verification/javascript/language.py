@@ -45,7 +45,7 @@ def prepared(program: str, given: SourceText, checked: ParsedSource, folder: Pat
         ToolError: Node cannot be run.
     """
     made = _program(checked.requirements)
-    ages = {place: _ages(each) for place, each in enumerate(made.requirements)}
+    ages = {index: _ages(each) for index, each in enumerate(made.requirements)}
     placed(given.text, folder)
     module = Module(program, folder, checked.cells, _windows(made), ages)
     return BuiltLibrary(module, f"Node {version(program)} {' '.join(FLAGS)}", {})

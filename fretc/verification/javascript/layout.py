@@ -37,8 +37,10 @@ LEXIS = Lexis(
 )
 """After a `return` the end of a line ends the statement."""
 _SIGNS = frozenset("! && || < <= > >= == != === !== + - ? : ( ) true false".split())
-_KEPT = frozenset("rail tick truths mark slide true false null undefined const let var".split())
-_FREE: tuple[Tokens, ...] = (("function", "rail"), ("function", "advance"))
+_KEPT = frozenset(
+    "approximation tick truths mark slide true false null undefined const let var".split()
+)
+_FREE: tuple[Tokens, ...] = (("function", "approximation"), ("function", "advance"))
 _READ = re.compile(r"const (\w+) = truths \[ (\d+) \] === null")
 
 
@@ -54,7 +56,7 @@ def check_layout(
     Args:
         text: text of the module.
         written: text that fretc writes for the same requirements.
-        cells: all cells of a rail.
+        cells: all cells of an approximation.
         windows: the cells that are windows.
         outcomes: names of the outcomes.
 
@@ -64,22 +66,22 @@ def check_layout(
     given, own = LEXIS.tokens(text), LEXIS.tokens(written)
     (first, own_first), (stepped, own_stepped) = bodies(given, own, _FREE)
     same_but_constants(first, own_first, -2)
-    literals = {name: int(place) for name, place in _READ.findall(" ".join(own_stepped))}
+    literals = {name: int(index) for name, index in _READ.findall(" ".join(own_stepped))}
     step = _JavaScriptStep(frozenset(parts(own_stepped, ";")), {*cells} - {*windows})
     statements, own_statements = [*parts(stepped, ";")], [*parts(own_stepped, ";")]
-    place, own_place = _signals_at(statements), _signals_at(own_statements)
-    for statement in statements[:place]:
+    index, own_place = _signals_at(statements), _signals_at(own_statements)
+    for statement in statements[:index]:
         step.read(statement)
     step.conditions = []
-    told, own_told = statements[place][4:], own_statements[own_place][4:]
+    told, own_told = statements[index][4:], own_statements[own_place][4:]
     step.tell(outcomes, records(told, ("{",)), records(own_told, ("{",)))
-    same(_joined(statements[place + 1 :]), _joined(own_statements[own_place + 1 :]))
+    same(_joined(statements[index + 1 :]), _joined(own_statements[own_place + 1 :]))
     return CheckedLayout(step.sources, literals)
 
 
 def _signals_at(statements: Sequence[Tokens]) -> int:
     """Index of the statement that returns the signals."""
-    head = ("rail", ".", "signals", "=")
+    head = ("approximation", ".", "signals", "=")
     places = [i for i, each in enumerate(statements) if each[:4] == head]
     if len(places) != 1:
         raise strange(statements[places[1]] if places else head)
@@ -98,10 +100,10 @@ class _JavaScriptStep(Flow):
 
         Args:
             known: statements that fretc writes, without semicolons.
-            cells: cells of a rail that are not windows.
+            cells: cells of an approximation that are not windows.
         """
         self._known = known
-        super().__init__(ExpressionForms({("rail", "."): cells}, _SIGNS, _KEPT))
+        super().__init__(ExpressionForms({("approximation", "."): cells}, _SIGNS, _KEPT))
 
     def read(self, statement: Tokens) -> None:
         """Read one more statement; an `if` or `else` contains a single one.
@@ -131,7 +133,7 @@ class _JavaScriptStep(Flow):
 
     def _assignment(self, rest: Tokens, statement: Tokens) -> bool:
         match rest:
-            case ("rail", ".", _, "=", *value):
+            case ("approximation", ".", _, "=", *value):
                 return self.give(rest[:3], value, statement)
             case ("const", name, "=", *value) if rest == statement:
                 return self.declare(name, value, statement)

@@ -20,10 +20,10 @@ from typing import Any, NamedTuple
 
 from compiler.formalization.letters import Valuation
 from fretc.verification.compiled.plan import RequirementPosition
-from fretc.verification.compiled.readings import RailReading, judged
+from fretc.verification.compiled.readings import ApproximationReading, judged
 from fretc.verification.compiled.tools import ToolError
+from fretc.verification.monitor.approximations import Letter
 from fretc.verification.monitor.equivalence import Judgement
-from fretc.verification.monitor.rails import Letter
 from fretish.classes.frozen import dataclass
 from fretish.system.resources import exceeded_time
 from monitors.kernel.verdicts import Truth
@@ -37,46 +37,47 @@ import { createInterface } from "node:readline";
 import { init, judge, REQUIREMENTS } from "./monitor.mjs";
 
 const AHEAD = 20_000; // steps in one answer, beside those that are asked for
-const RAILS = ["certain", "possible"];
+const APPROXIMATIONS = ["certain", "possible"];
 const TRUTHS = ["trigger", "violation", "obligationPending", "satisfiedForever", "answer"];
 const code = (value) => [false, true, null].indexOf(value);
 
 /** All states that a plan reaches, found as they are asked for. */
-function search({ outcome, cells, windows, ages, rails, letters }) {
+function search({ outcome, cells, windows, ages, approximations, letters }) {
   const { deadlineTicks } = REQUIREMENTS[outcome];
   const now = Math.max(deadlineTicks ?? 0, ...windows.map(([, hi]) => hi)) + 2;
   const machine = init();
   const states = [], places = new Map(), told = [], readings = new Map();
   let done = 0;
 
-  const saved = (rail, tick) => {
-    const marks = rail.marks[outcome];
+  const saved = (approximation, tick) => {
+    const marks = approximation.marks[outcome];
     return [
-      cells.map((name) => rail[name]),
+      cells.map((name) => approximation[name]),
       windows.map(([name, hi]) => {
-        const { runs, first } = rail[name];
-        return runs.slice(first).map(([a, b]) => [Math.min(tick - a, hi), tick - b]);
+        const { intervals, first } = approximation[name];
+        return intervals.slice(first).map(([a, b]) => [Math.min(tick - a, hi), tick - b]);
       }),
       [marks.broken >= 0, marks.violationInevitable >= 0],
       ages.map((name) => (marks[name] < 0 ? -1 : Math.min(tick - marks[name], deadlineTicks + 1))),
     ];
   };
-  const load = (rail, [values, runs, latched, old]) => {
-    cells.forEach((name, i) => (rail[name] = values[i]));
+  const load = (approximation, [values, intervals, latched, old]) => {
+    cells.forEach((name, i) => (approximation[name] = values[i]));
     windows.forEach(([name], i) => {
-      rail[name] = { runs: runs[i].map(([a, b]) => [now - a, now - b]), first: 0 };
+      const all = intervals[i].map(([a, b]) => [now - a, now - b]);
+      approximation[name] = { intervals: all, first: 0 };
     });
     const [broken, violationInevitable] = latched.map((is) => (is ? 0 : -1));
     const marks = { broken, violationInevitable, last: -1, open: -1 };
     ages.forEach((name, i) => (marks[name] = old[i] < 0 ? -1 : now - old[i]));
-    rail.marks[outcome] = marks;
+    approximation.marks[outcome] = marks;
   };
   const exact = (_, value) => {
     if (typeof value !== "number") return value === undefined ? "undefined" : value;
     return Object.is(value, -0) ? "-0" : String(value);
   };
   const placed = (tick) => {
-    const parts = rails.map((i) => saved(machine[RAILS[i]], tick));
+    const parts = approximations.map((i) => saved(machine[APPROXIMATIONS[i]], tick));
     const key = JSON.stringify(parts, exact);
     if (!places.has(key)) {
       places.set(key, states.length);
@@ -92,8 +93,10 @@ function search({ outcome, cells, windows, ages, rails, letters }) {
   ];
   const outcomeOf = (tick, { certain, possible, verdict, finite, obligationPending }) => {
     const of = { certain, possible };
-    const parts = RAILS.map((name) => reading(of[name], machine[name].marks[outcome], tick));
-    const facts = RAILS.map((name) => {
+    const parts = APPROXIMATIONS.map(
+      (name) => reading(of[name], machine[name].marks[outcome], tick),
+    );
+    const facts = APPROXIMATIONS.map((name) => {
       const { broken, violationInevitable } = machine[name].marks[outcome];
       const pending = of[name].trigger || of[name].obligationPending;
       return [broken >= 0, violationInevitable >= 0, of[name].violatedIfEnded, pending];
@@ -108,7 +111,7 @@ function search({ outcome, cells, windows, ages, rails, letters }) {
     return readings.get(key);
   };
   const step = (state, letter) => {
-    rails.forEach((rail, i) => load(machine[RAILS[rail]], states[state][i]));
+    approximations.forEach((which, i) => load(machine[APPROXIMATIONS[which]], states[state][i]));
     machine.tick = now;
     const said = judge(machine, letter)[outcome];
     return [placed(machine.tick), outcomeOf(machine.tick, said)];
@@ -143,7 +146,7 @@ class Module:
     folder: Path
     """Folder that the caller removes, also if Node or fretc is killed."""
     cells: tuple[str, ...]
-    """All cells of a rail."""
+    """All cells of an approximation."""
     windows: Mapping[str, int]
     """Windows with the maximum age of their values."""
     ages: Mapping[int, tuple[str, ...]]
@@ -203,34 +206,36 @@ class ModuleRequirement:
         self._module, self._plan = module, plan
         self._process, self._errors = process, errors
 
-    def delayed(self, *, doubt: bool) -> None:
+    def delayed(self, *, is_possible: bool) -> None:
         """None: its windows are those of the monitor in Python, and are explored with all bits."""
 
     def judging(self) -> NodeMonitorMachine:
-        """A machine of both rails, before the first tick."""
+        """A machine of both approximations, before the first tick."""
         letters = tuple(product((False, True), repeat=len(self._plan.inputs)))
         return NodeMonitorMachine(self._table((0, 1), letters))
 
-    def rail(self, letters: Sequence[Letter], *, doubt: bool) -> TableRail:
-        """One of the rails, before the first tick."""
-        return TableRail(self._table((int(doubt),), letters), doubt=doubt)
+    def approximation(self, letters: Sequence[Letter], *, is_possible: bool) -> TableApproximation:
+        """One of the approximations, before the first tick."""
+        return TableApproximation(
+            self._table((int(is_possible),), letters), is_possible=is_possible
+        )
 
-    def _table(self, rails: Sequence[int], letters: Sequence[Letter]) -> StateTable:
+    def _table(self, approximations: Sequence[int], letters: Sequence[Letter]) -> StateTable:
         module, plan = self._module, self._plan
         needed = [name for name in module.cells if name in plan.needed]
         rows = []
         for letter in letters:
             row: list[Truth] = [False] * plan.width
-            for value, place in zip(letter, plan.inputs, strict=True):
-                if place >= 0:
-                    row[place] = value
+            for value, index in zip(letter, plan.inputs, strict=True):
+                if index >= 0:
+                    row[index] = value
             rows.append(row)
         order = {
             "outcome": plan.outcome,
             "cells": [name for name in needed if name not in module.windows],
             "windows": [(name, module.windows[name]) for name in needed if name in module.windows],
             "ages": module.ages[plan.outcome],
-            "rails": rails,
+            "approximations": approximations,
             "letters": rows,
         }
         table = StateTable(self, {letter: i for i, letter in enumerate(letters)})
@@ -262,13 +267,13 @@ class ModuleRequirement:
 class Observation(NamedTuple):
     """Result of a step."""
 
-    rails: tuple[RailReading, RailReading]
+    approximations: tuple[ApproximationReading, ApproximationReading]
     """Certain and possible value."""
     verdicts: tuple[object, ...]
     """Verdict, FRET's finite verdict, and open obligation."""
     is_real: bool
-    """Whether a certain value is also possible; a rail combined with any other rail may be in a
-    state that it cannot have at this tick."""
+    """Whether a certain value is also possible; an approximation combined with any other one may be
+    in a state that it cannot have at this tick."""
 
 
 @dataclass(slots=True)
@@ -285,9 +290,9 @@ class StateTable:
         """Add the steps of further states."""
         self.rows += answer["rows"]
         for certain, possible, verdict, *truths, is_real in answer["told"]:
-            rails = RailReading(*certain), RailReading(*possible)
+            approximations = ApproximationReading(*certain), ApproximationReading(*possible)
             both = (_TRUTHS[each] if each >= 0 else "no truth value" for each in truths)
-            self.outcomes.append(Observation(rails, (verdict, *both), is_real))
+            self.outcomes.append(Observation(approximations, (verdict, *both), is_real))
 
     def step(self, state: int, letter: Letter) -> tuple[int, int]:
         """The next state, and the number of the observation."""
@@ -297,7 +302,7 @@ class StateTable:
 
 
 class NodeMonitorMachine:
-    """Both rails, for known propositions."""
+    """Both approximations, for known propositions."""
 
     def __init__(self, table: StateTable) -> None:
         """The machine before the first tick."""
@@ -318,20 +323,20 @@ class NodeMonitorMachine:
         return str(verdict), finite is True
 
 
-class TableRail:
-    """One rail; the state of the other rail is arbitrary."""
+class TableApproximation:
+    """One approximation; the state of the other approximation is arbitrary."""
 
-    def __init__(self, table: StateTable, *, doubt: bool) -> None:
-        """The rail before the first tick; with `doubt` the possible one."""
-        self._table, self._rail, self._state = table, int(doubt), 0
+    def __init__(self, table: StateTable, *, is_possible: bool) -> None:
+        """The approximation before the first tick; with `is_possible` the possible one."""
+        self._table, self._approximation, self._state = table, int(is_possible), 0
 
     def save(self) -> int:
         """Number of the state."""
         return self._state
 
     def step(self, state: int, letter: Letter) -> tuple[object, ...]:
-        """The reading after a tick, and whether the verdict follows from both rails."""
+        """The reading after a tick, and whether the verdict follows from both approximations."""
         self._state, number = self._table.step(state, letter)
         told = self._table.outcomes[number]
-        follows = not told.is_real or told.verdicts == judged(*told.rails)
-        return (*told.rails[self._rail], follows)
+        follows = not told.is_real or told.verdicts == judged(*told.approximations)
+        return (*told.approximations[self._approximation], follows)

@@ -57,8 +57,8 @@ def _proofs(
     under = (f"C is that of the machines {machines} of Frama-C: an `int` has 16 or 32 bits",)
     for given, own in _given(accepted, request):
         request.progress(f"{given.name}: Frama-C")
-        found = analysed(own, given, program, request.limits, project.formalized)
-        for requirement, outcome, engine, artefacts in found:
+        proofs = analysed(own, given, program, request.limits, project.formalized)
+        for requirement, outcome, engine, artefacts in proofs:
             yield proof(requirement.id, Layer.MONITOR, CLAIM, outcome, engine, under, artefacts)
 
 

@@ -184,8 +184,8 @@ def _answers(sentence: s.Sentence, stands: str) -> bool:
     """Whether the response holds whenever the robot stands."""
     atoms = atoms_of(sentence)
     letters = letters_by_valuation(sentence, atoms)
-    place = atoms.index(stands)
-    return all(letter[2] for values, letter in letters.items() if values[place])
+    index = atoms.index(stands)
+    return all(letter[2] for values, letter in letters.items() if values[index])
 
 
 # In another process ---------------------------------------------------------------------------

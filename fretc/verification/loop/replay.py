@@ -93,7 +93,7 @@ class _Replay:
         self._step(self._safety, tick)
         self._step(self._observer, tick)
         self.violated = self._observer.verdicts()[self._places[1]] == VIOLATED
-        signals = self._safety.must.signals()[self._places[0]]
+        signals = self._safety.certain.signals()[self._places[0]]
         assert bool(signals.trigger or signals.obligation_pending) == tick.requested
         self._send(tick)
         delivered = None

@@ -175,14 +175,14 @@ def reach(loop: Loop, limit: int) -> Exploration:
     Raises:
         ModelTooLargeError: there are more states than the limit.
     """
-    place = loop.environment.atoms.index(loop.environment.stands)
+    index = loop.environment.atoms.index(loop.environment.stands)
     came: dict[Node, tuple[Node, LoopTick] | None] = {loop.initial: None}
     waiting, visited = [loop.initial], set[Node]()
     steps, triggered, moved = 0, False, False
     for node in waiting:
         for tick, begun in loop.begins(node):
             triggered |= tick.triggered
-            moved |= not tick.letter[place]
+            moved |= not tick.letter[index]
             if tick.violated:
                 run = (*_way(came, node), (tick, next(loop.ends(begun))))
                 return Exploration(len(came), steps, run, triggered, moved)

@@ -45,12 +45,12 @@ class TermTable:
 
     _numbers: dict[tuple[object, ...], int] = field(default_factory=dict)
 
-    def of(self, text: str, place: int) -> tuple[int, ...]:
+    def of(self, text: str, index: int) -> tuple[int, ...]:
         """The terms of a requirement's signals, in their order.
 
         Args:
             text: text of a monitor, in the layout that fretc writes.
-            place: index of the requirement in the monitor.
+            index: index of the requirement in the monitor.
 
         Raises:
             KeyError, IndexError: a signal, or the requirement, is missing.
@@ -73,7 +73,7 @@ class TermTable:
                     names[name] = self._term(value, names)
         assert isinstance(last, ast.Return)
         assert isinstance(last.value, ast.Tuple)
-        signals = last.value.elts[place]
+        signals = last.value.elts[index]
         assert isinstance(signals, ast.Call)
         terms = {keyword.arg: self._term(keyword.value, names) for keyword in signals.keywords}
         return tuple(terms[name] for name in SIGNALS)
@@ -120,7 +120,7 @@ class Disagreement:
 def agreed(
     requirement: FormalizedRequirement,
     monitor: Monitor,
-    place: int,
+    index: int,
     atoms: Sequence[str],
     never: Sequence[Exclusion] = (),
 ) -> int | Disagreement:
@@ -129,7 +129,7 @@ def agreed(
     Args:
         requirement: the requirement.
         monitor: monitor with both programs.
-        place: index of the requirement in the monitor.
+        index: index of the requirement in the monitor.
         atoms: atoms on which the requirement depends.
         never: additional combinations that are excluded.
     """
@@ -137,7 +137,7 @@ def agreed(
     is_alone = len(monitor.REQUIREMENTS) == 1
     traces = _traces(monitor, bound, *((tuple(atoms), never) if is_alone or never else ((), ())))
     for columns, ticks in traces:
-        tick = ticks[place]
+        tick = ticks[index]
         if tick is not None:
             word = tuple(_rows({n: columns.get(n, _FALSE) for n in atoms}, tick + 1))
             return Disagreement(word)
@@ -164,61 +164,61 @@ def _traces(
         never: combinations that cannot occur.
     """
     choose, length = random.Random(bound), _length(bound)
-    found = []
+    traces = []
     for number in range(min(DRAWN, max(_FEWEST, _TICKS // length))):
         odds = 0.02 if number % 2 else 0.0
         names = atoms or monitor.PROPOSITIONS
         drawn = {name: _drawn(choose, length, bound, odds) for name in names}
         drawn = _possible(drawn, never, length)
-        found.append((drawn, _first_differences(monitor, drawn, length)))
-    return tuple(found)
+        traces.append((drawn, _first_differences(monitor, drawn, length)))
+    return tuple(traces)
 
 
 def _possible(
     columns: Mapping[str, Column], excluded: Sequence[Exclusion], length: int
 ) -> dict[str, Column]:
     """The columns with unknown values in place of impossible combinations."""
-    every, found = (1 << length) - 1, dict(columns)
+    every, possible = (1 << length) - 1, dict(columns)
     for exclusion in excluded:
         at = every
         for name, value in exclusion:
-            true, unknown = found[name]
+            true, unknown = possible[name]
             at &= true if value else every ^ (true | unknown)
         for name, _ in exclusion:
-            true, unknown = found[name]
-            found[name] = Column(true & ~at, unknown | at)
-    return found
+            true, unknown = possible[name]
+            possible[name] = Column(true & ~at, unknown | at)
+    return possible
 
 
 def _first_differences(
     monitor: Monitor, columns: Mapping[str, Column], length: int
 ) -> tuple[int | None, ...]:
-    """For each requirement, the first tick at which the programs' signals differ, on a rail.
+    """For each requirement, the first tick at which an approximation of the programs differs.
 
     Propositions without a column are false.
     """
     every, places = (1 << length) - 1, range(len(monitor.REQUIREMENTS))
     columns = {**dict.fromkeys(monitor.PROPOSITIONS, _FALSE), **columns}
     try:
-        must, may = (
-            monitor.columns(every, **literals_of(monitor, columns, every, doubt))
-            for doubt in (False, True)
+        certain, possible = (
+            monitor.columns(every, **literals_of(monitor, columns, every, is_possible))
+            for is_possible in (False, True)
         )
-        beyond = [any(each >> length for each in (*must[i], *may[i])) for i in places]
+        beyond = [any(each >> length for each in (*certain[i], *possible[i])) for i in places]
     except Exception:
         return (length - 1,) * len(places)
-    found: list[int | None] = [length - 1 if is_beyond else None for is_beyond in beyond]
+    ticks: list[int | None] = [length - 1 if is_beyond else None for is_beyond in beyond]
     monitor.reset()
     values = [truths(columns[name], length) for name in monitor.PROPOSITIONS]
     for tick in range(length):
         monitor.advance([tuple([column[tick] for column in values])])
-        for rail, expected in ((monitor.must, must), (monitor.may, may)):
-            signals = rail.signals()
-            for place in [place for place in places if found[place] is None]:
-                now = [bool(column >> tick & 1) for column in expected[place]]
-                if [bool(value) for value in signals[place]] != now:
-                    found[place] = tick
-    return tuple(found)
+        for approximation, expected in ((monitor.certain, certain), (monitor.possible, possible)):
+            signals = approximation.signals()
+            for index in [index for index in places if ticks[index] is None]:
+                now = [bool(column >> tick & 1) for column in expected[index]]
+                if [bool(value) for value in signals[index]] != now:
+                    ticks[index] = tick
+    return tuple(ticks)
 
 
 def _drawn(choose: random.Random, length: int, bound: int, unknown: float) -> Column:

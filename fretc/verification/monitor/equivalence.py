@@ -222,7 +222,7 @@ def _in_lock_step(
     pairs = [start]
     origins: list[tuple[int, Valuation] | None] = [None]
     steps = 0
-    for place, (state, saved) in enumerate(pairs):  # The list grows during the loop.
+    for index, (state, saved) in enumerate(pairs):  # The list grows during the loop.
         row = reference.moves[state]
         for valuation, letter in zip(reference.valuations, reference.letters, strict=True):
             machine.load(saved)
@@ -231,29 +231,29 @@ def _in_lock_step(
             after = row[letter]
             expected = reference.judgements[after]
             if judgement != expected:
-                return DifferingTrace((*word(origins, place), valuation), expected, judgement)
+                return DifferingTrace((*word(origins, index), valuation), expected, judgement)
             if expected[0] == "violated":
                 continue
             reached = machine.save()
             if visited.add(after, reached):
                 pairs.append((after, reached))
-                origins.append((place, valuation))
+                origins.append((index, valuation))
         if len(pairs) > limit:
             return f"the automaton and the monitor have more than {limit} states"
     return Equivalence(len(pairs), steps)
 
 
-def word(origins: Sequence[tuple[int, V] | None], place: int) -> tuple[V, ...]:
+def word(origins: Sequence[tuple[int, V] | None], index: int) -> tuple[V, ...]:
     """The valuations that led to a pair, from the first tick on.
 
     Args:
         origins: the place of the pair before each pair, and the valuation after it.
-        place: the place of a pair.
+        index: the place of a pair.
     """
     valuations: list[V] = []
-    origin = origins[place]
+    origin = origins[index]
     while origin is not None:
-        place, valuation = origin
+        index, valuation = origin
         valuations.append(valuation)
-        origin = origins[place]
+        origin = origins[index]
     return tuple(reversed(valuations))

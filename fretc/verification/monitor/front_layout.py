@@ -34,20 +34,20 @@ def declared_variables(node: ast.stmt) -> Mapping[str, Variable]:
     Raises:
         UnexpectedCodeError: they do not have the layout that fretc writes.
     """
-    found: dict[str, Variable] = {}
+    variables: dict[str, Variable] = {}
     match node:
         case ast.AnnAssign(ast.Name("VARIABLES"), _, ast.Dict(keys, values)):
             for key, value in zip(keys, values, strict=True):
                 match key, value:
                     case ast.Constant(str(name)), ast.Call(ast.Name("Variable"), args, more):
-                        require(name not in found, node)
-                        found[name] = _variable(args, more, node)
+                        require(name not in variables, node)
+                        variables[name] = _variable(args, more, node)
                     case _:
                         require(False, node)
         case _:
             require(False, node)
-    require(bool(found), node)
-    return found
+    require(bool(variables), node)
+    return variables
 
 
 def _variable(args: Sequence[ast.expr], more: Sequence[ast.keyword], node: ast.stmt) -> Variable:
@@ -119,8 +119,8 @@ def _given(variables: Mapping[str, Variable]) -> Iterator[str]:
 def _check_statements(statements: Sequence[ast.stmt], bound: frozenset[str]) -> frozenset[str]:
     """The names that have a value after the statements."""
     fixed = FUNCTIONS | {"self", "kept"}
-    for place, statement in enumerate(statements):
-        if place == 0 and is_one_of(statement, "kept = self.kept"):
+    for index, statement in enumerate(statements):
+        if index == 0 and is_one_of(statement, "kept = self.kept"):
             bound |= {"kept"}
             continue
         match statement:
@@ -132,7 +132,7 @@ def _check_statements(statements: Sequence[ast.stmt], bound: frozenset[str]) -> 
             case ast.Assign([ast.Name(name)], value):
                 _check_truth(value, bound)
             case ast.Assign([ast.Attribute(ast.Name("self"), "kept")], ast.Tuple(values)):
-                require(place == len(statements) - 1 and "kept" in bound, statement)
+                require(index == len(statements) - 1 and "kept" in bound, statement)
                 for each in values:
                     _check_number(each, bound)
                 continue

@@ -14,20 +14,20 @@ from fretc.verification.monitor.equivalence import Judgement
 from monitors.kernel import Monitor
 
 
-class RailState:
-    """All cells of a rail: a step reads no other stored value."""
+class ApproximationState:
+    """All cells of an approximation: a step reads no other stored value."""
 
-    def __init__(self, rail: Any, among: Collection[str] | None = None) -> None:
-        """The cells of a rail.
+    def __init__(self, approximation: Any, among: Collection[str] | None = None) -> None:
+        """The cells of an approximation.
 
         Args:
-            rail: rail in the layout that fretc writes.
+            approximation: approximation in the layout that fretc writes.
             among: the relevant cells; the others have no influence.
         """
-        self._rail = rail
-        cells = [name for name in rail.CELLS if among is None or name in among]
+        self._approximation = approximation
+        cells = [name for name in approximation.CELLS if among is None or name in among]
         # The text has its own class for windows.
-        self._windows = [n for n in cells if hasattr(getattr(rail, n), "restore")]
+        self._windows = [n for n in cells if hasattr(getattr(approximation, n), "restore")]
         self._plain = [name for name in cells if name not in self._windows]
 
     @property
@@ -37,17 +37,17 @@ class RailState:
 
     def save(self) -> Hashable:
         """Values of the cells."""
-        rail = self._rail
-        cells = tuple([getattr(rail, name) for name in self._plain])
-        return cells, tuple([getattr(rail, name).state() for name in self._windows])
+        approximation = self._approximation
+        cells = tuple([getattr(approximation, name) for name in self._plain])
+        return cells, tuple([getattr(approximation, name).state() for name in self._windows])
 
     def load(self, state: Any) -> None:
         """Restore saved values."""
-        rail, (cells, windows) = self._rail, state
+        approximation, (cells, windows) = self._approximation, state
         for name, value in zip(self._plain, cells, strict=True):
-            setattr(rail, name, value)
+            setattr(approximation, name, value)
         for name, value in zip(self._windows, windows, strict=True):
-            getattr(rail, name).restore(value)
+            getattr(approximation, name).restore(value)
 
 
 class Stepped:
@@ -56,7 +56,7 @@ class Stepped:
     def __init__(
         self,
         monitor: Monitor,
-        place: int,
+        index: int,
         atoms: Sequence[str],
         cells: Collection[str] | None = None,
     ) -> None:
@@ -64,18 +64,18 @@ class Stepped:
 
         Args:
             monitor: monitor in the layout that fretc writes; it is reset.
-            place: index of the requirement in the monitor.
+            index: index of the requirement in the monitor.
             atoms: order of the values in a valuation; at least the monitor's propositions.
             cells: cells on which the requirement depends; None: all.
         """
         monitor.reset()
-        rail: Any = monitor.must
-        self._rail, self._place = rail, place
+        approximation: Any = monitor.certain
+        self._approximation, self._place = approximation, index
         self._alone = len(monitor.REQUIREMENTS) == 1
         self._step = _stepping(monitor, atoms)
-        self._cells = RailState(rail, cells)
+        self._cells = ApproximationState(approximation, cells)
         self._fates = [
-            n for n in rail.__slots__ if n.endswith(("_broken", "_violation_inevitable"))
+            n for n in approximation.__slots__ if n.endswith(("_broken", "_violation_inevitable"))
         ]
 
     def save(self) -> Hashable:
@@ -86,19 +86,19 @@ class Stepped:
         """Restore a state without violation."""
         self._cells.load(state)
         for name in self._fates:
-            setattr(self._rail, name, -1)
+            setattr(self._approximation, name, -1)
 
     def step(self, letter: Valuation) -> Judgement:
         """Verdict of the text's own step, and FRET's finite verdict."""
         verdicts = self._step(letter)
-        rail = self._rail
-        signals, marks = rail.signals()[self._place], rail.marks()[self._place]
+        approximation = self._approximation
+        signals, marks = approximation.signals()[self._place], approximation.marks()[self._place]
         verdict = verdicts if self._alone else verdicts[self._place]
         return str(verdict), marks.broken < 0 and not signals.violated_if_ended
 
     def demands(self) -> tuple[bool, bool]:
         """Whether an obligation began at the last tick, and whether one is open after it."""
-        signals = self._rail.signals()[self._place]
+        signals = self._approximation.signals()[self._place]
         return bool(signals.trigger), bool(signals.obligation_pending)
 
 

@@ -68,13 +68,15 @@ def slice_of(text: str, prefix: str, propositions: Mapping[str, str]) -> Slice:
 
 @lru_cache(maxsize=1)
 def _sources(text: str) -> _Given:
-    rail = next(
+    approximation = next(
         node
         for node in own(text).body
-        if isinstance(node, ast.ClassDef) and node.name.endswith("Rail")
+        if isinstance(node, ast.ClassDef) and node.name.endswith("Approximation")
     )
     advance = next(
-        part for part in rail.body if isinstance(part, ast.FunctionDef) and part.name == "advance"
+        part
+        for part in approximation.body
+        if isinstance(part, ast.FunctionDef) and part.name == "advance"
     )
     given: dict[str, frozenset[str]] = {}
     for name, sources in _given(advance.body, frozenset()):
@@ -83,13 +85,13 @@ def _sources(text: str) -> _Given:
 
 
 def _closure(given: _Given, names: Iterable[str]) -> frozenset[str]:
-    found = {*names}
-    waiting = [*found]
+    closure = {*names}
+    waiting = [*closure]
     while waiting:
-        for name in given.get(waiting.pop(), frozenset()) - found:
-            found.add(name)
+        for name in given.get(waiting.pop(), frozenset()) - closure:
+            closure.add(name)
             waiting.append(name)
-    return frozenset(found)
+    return frozenset(closure)
 
 
 def _given(

@@ -29,13 +29,18 @@ from fretc.verification.monitor.statements import (
     reads,
     require,
 )
-from fretc.verification.monitor.tick_layout import FIXED, RailNames, RowBehaviour, check_advance
+from fretc.verification.monitor.tick_layout import (
+    FIXED,
+    ApproximationNames,
+    RowBehaviour,
+    check_advance,
+)
 from fretish.reading.text_encoding import is_utf8
 from monitors.kernel.variables import Variable
 from monitors.source_text import Runtime, kernel, kernel_of_variables
 
-_OF_RAILS = frozenset({"CELLS", "advance", "signals", "marks"})
-"""Other attributes of a rail."""
+_OF_APPROXIMATIONS = frozenset({"CELLS", "advance", "signals", "marks"})
+"""Other attributes of an approximation."""
 
 
 def strange(text: str) -> str | None:
@@ -77,27 +82,35 @@ def _runtime(text: str) -> Runtime:
 
 def _check_module(module: ast.Module, *, by_variables: bool) -> None:
     match module.body:
-        case [ast.ClassDef() as rail, ast.ClassDef() as monitor, binding, run]:
+        case [ast.ClassDef() as approximation, ast.ClassDef() as monitor, binding, run]:
             pass
         case _:
             raise UnexpectedStatementError(
                 "it is not laid out as fretc writes it: two classes and no more"
             )
-    title = rail.name.removesuffix("Rail")
-    require(rail.name == f"{title}Rail" and title != "", rail)
-    require(monitor.name == f"{title}Monitor" and _is_plain(rail) and _is_plain(monitor), monitor)
+    title = approximation.name.removesuffix("Approximation")
+    require(approximation.name == f"{title}Approximation" and title != "", approximation)
+    require(
+        monitor.name == f"{title}Monitor" and _is_plain(approximation) and _is_plain(monitor),
+        monitor,
+    )
     base = "VariableMonitor" if by_variables else "Monitor"
-    require([ast.unparse(each) for each in (*rail.bases, *monitor.bases)] == [base], monitor)
+    require(
+        [ast.unparse(each) for each in (*approximation.bases, *monitor.bases)] == [base], monitor
+    )
     require(is_one_of(binding, f"MONITOR: 'type[{base}]' = {monitor.name}"), binding)
     _check_annotations(module, title)
     main = "main_by_variables" if by_variables else "main"
     require(is_one_of(run, f'if __name__ == "__main__":\n    sys.exit({main}(MONITOR))'), run)
-    names, advance = _rail(rail)
-    inputs, step, verdicts = _monitor(monitor, rail.name, names, by_variables=by_variables)
-    reserved = {*FIXED, *_OF_RAILS, *locals_of(inputs.values())}
-    require(reserved.isdisjoint(names.cells), rail)
+    names, advance = _approximation(approximation)
+    inputs, step, verdicts = _monitor(monitor, approximation.name, names, by_variables=by_variables)
+    reserved = {*FIXED, *_OF_APPROXIMATIONS, *locals_of(inputs.values())}
+    require(reserved.isdisjoint(names.cells), approximation)
     suffixes = tuple(f"_{name}" for name in (*MARKS, "signals"))
-    require(not any(cell.startswith("_") or cell.endswith(suffixes) for cell in names.cells), rail)
+    require(
+        not any(cell.startswith("_") or cell.endswith(suffixes) for cell in names.cells),
+        approximation,
+    )
     tick = check_advance(advance, names, inputs)
     _check_verdicts(verdicts, names.prefixes, tick)
     if not by_variables:
@@ -106,7 +119,7 @@ def _check_module(module: ast.Module, *, by_variables: bool) -> None:
 
 def _check_annotations(module: ast.Module, title: str) -> None:
     """Check annotations: names, and texts, which Python 3.8 can only read so."""
-    allowed = {*_NAMES, *map(repr, _ANNOTATIONS), f"{title}Rail"}
+    allowed = {*_NAMES, *map(repr, _ANNOTATIONS), f"{title}Approximation"}
     for node in ast.walk(module):
         match node:
             case ast.FunctionDef(returns=ast.expr() as annotation):
@@ -141,8 +154,8 @@ def _is_plain(node: ast.ClassDef) -> bool:
     return plain and not getattr(node, "type_params", ())
 
 
-def _rail(node: ast.ClassDef) -> tuple[RailNames, ast.stmt]:
-    """Names of the rail; checks everything except `advance`."""
+def _approximation(node: ast.ClassDef) -> tuple[ApproximationNames, ast.stmt]:
+    """Names of the approximation; checks everything except `advance`."""
     body = below_docstring(node)
     require(len(body) == 6, node)
     slots, cells, initial, advance, signals, marks = body
@@ -157,8 +170,8 @@ def _rail(node: ast.ClassDef) -> tuple[RailNames, ast.stmt]:
                 "it is not laid out as fretc writes it: `__slots__`, `CELLS`"
             )
     prefixes = _prefixes(signals, marks)
-    names = RailNames(names_in(all_cells), frozenset(_windows(initial)), prefixes)
-    reserved = ("doubt", "tick", *names.marks, *names.signals)
+    names = ApproximationNames(names_in(all_cells), frozenset(_windows(initial)), prefixes)
+    reserved = ("is_possible", "tick", *names.marks, *names.signals)
     everything = (*reserved, *names.cells)
     require(len({*everything}) == len(everything), cells)
     require(sorted(names_in(all_slots)) == sorted(everything), slots)
@@ -167,7 +180,7 @@ def _rail(node: ast.ClassDef) -> tuple[RailNames, ast.stmt]:
 
 
 def _prefixes(signals: ast.stmt, marks: ast.stmt) -> tuple[str, ...]:
-    """Prefixes of the requirements, from the signals of a rail."""
+    """Prefixes of the requirements, from the signals of an approximation."""
     prefixes = tuple(
         node.attr.removesuffix("_signals")
         for node in ast.walk(signals)
@@ -190,14 +203,14 @@ def _windows(initial: ast.stmt) -> Iterator[str]:
                 yield name
 
 
-def _check_initial(node: ast.stmt, rail: RailNames) -> None:
-    fixed = {"doubt": "doubt", **dict.fromkeys(("tick", *rail.marks), "-1")}
-    signals = dict.fromkeys(rail.signals, f"(False,) * {len(SIGNALS)}")
+def _check_initial(node: ast.stmt, approximation: ApproximationNames) -> None:
+    fixed = {"is_possible": "is_possible", **dict.fromkeys(("tick", *approximation.marks), "-1")}
+    signals = dict.fromkeys(approximation.signals, f"(False,) * {len(SIGNALS)}")
     names = []
-    for statement in body_of(node, "__init__", "self, doubt: bool = False"):
+    for statement in body_of(node, "__init__", "self, is_possible: bool = False"):
         match statement:
             case ast.Assign([ast.Attribute(ast.Name("self"), name)], value):
-                right = name in rail.cells and _is_initial(value)
+                right = name in approximation.cells and _is_initial(value)
                 require(right or is_one_of(value, fixed.get(name, "nothing")), statement)
                 names.append(name)
             case ast.AnnAssign(ast.Attribute(ast.Name("self"), name), _, ast.expr() as value):
@@ -205,7 +218,7 @@ def _check_initial(node: ast.stmt, rail: RailNames) -> None:
                 names.append(name)
             case _:
                 require(False, statement)
-    require(sorted(names) == sorted((*fixed, *signals, *rail.cells)), node)
+    require(sorted(names) == sorted((*fixed, *signals, *approximation.cells)), node)
 
 
 def _is_initial(node: ast.expr) -> bool:
@@ -219,7 +232,7 @@ def _is_initial(node: ast.expr) -> bool:
 
 
 def _monitor(
-    node: ast.ClassDef, rail: str, names: RailNames, *, by_variables: bool
+    node: ast.ClassDef, approximation: str, names: ApproximationNames, *, by_variables: bool
 ) -> tuple[Mapping[str, str], ast.stmt, ast.stmt]:
     """Propositions of a monitor with their parameters, its `step` and its `verdicts`.
 
@@ -229,14 +242,20 @@ def _monitor(
     variables = [body.pop(3), body.pop(7)] if by_variables and len(body) == 13 else []
     require(len(body) == 11 and by_variables is bool(variables), node)
     program, requirements, propositions, literals, *rest = body
-    rail_binding, must, may, step, run, verdicts, columns = rest
+    approximation_binding, certain, possible, step, run, verdicts, columns = rest
     require(isinstance(program, ast.Assign) and _is_text(program, "PROGRAM"), program)
     _check_requirements(requirements, names.prefixes)
     declared = declared_variables(variables[0]) if variables else {}
     inputs = _inputs(propositions, names.prefixes, declared)
     literal_names = _literals(literals, inputs)
-    require(is_one_of(rail_binding, f"RAIL = {rail}"), rail_binding)
-    require(is_one_of(must, f"must: {rail}") and is_one_of(may, f"may: {rail}"), must)
+    require(
+        is_one_of(approximation_binding, f"APPROXIMATION = {approximation}"), approximation_binding
+    )
+    require(
+        is_one_of(certain, f"certain: {approximation}")
+        and is_one_of(possible, f"possible: {approximation}"),
+        certain,
+    )
     if variables:
         check_front(
             (variables[1], step, run), declared, tuple(inputs.values()), len(names.prefixes)
@@ -318,7 +337,8 @@ def _check_step(
     if is_inlined(len(prefixes), len(inputs)):
         odd = "".join(f" or ({name} is not True and {name} is not False)" for name in inputs)
         slow = text.replace("\n", "\n    ")
-        text = f"rail = self.must\nif rail is not self.may{odd}:\n    {slow}\n"
+        text = "approximation = self.certain\n"
+        text += f"if approximation is not self.possible{odd}:\n    {slow}\n"
         text += f"{tick.inlined}\n{_verdict(prefixes[0], tick)}"
     body = body_of(node, "step", parameters if inputs else "self")
     for statement, expected in zip(body, ast.parse(text).body, strict=False):
@@ -328,37 +348,39 @@ def _check_step(
 
 def _verdict(prefix: str, tick: RowBehaviour) -> str:
     """The end of a step with an inlined tick."""
-    text = f"if {_violated('rail', prefix, tick)}:\n    return VIOLATED\n"
+    text = f"if {_violated('approximation', prefix, tick)}:\n    return VIOLATED\n"
     if prefix in tick.satisfied_forever:
-        text += f"if rail.{prefix}_signals[{_SATISFIED_FOREVER}]:\n    return SATISFIED\n"
+        text += f"if approximation.{prefix}_signals[{_SATISFIED_FOREVER}]:\n    return SATISFIED\n"
     return f"{text}return PENDING"
 
 
 def _check_verdicts(node: ast.stmt, prefixes: Sequence[str], tick: RowBehaviour) -> None:
-    """Check that verdicts follow from marks and signals of both rails."""
+    """Check that verdicts follow from marks and signals of both approximations."""
     values = []
     for prefix in prefixes:
         rest = "PENDING"
         if prefix in tick.satisfied_forever:
-            forever = f"must.{prefix}_signals[{_SATISFIED_FOREVER}]"
-            possible = _violated("may", prefix, tick)
-            rest = f"SATISFIED if {forever} and not ({possible}) else PENDING"
-        values.append(f"VIOLATED if {_violated('must', prefix, tick)} else {rest}")
-    rails = "must = self.must\n" + "may = self.may\n" * bool(tick.satisfied_forever)
-    text = f"{rails}return ({', '.join(values)},)"
+            forever = f"certain.{prefix}_signals[{_SATISFIED_FOREVER}]"
+            violated = _violated("possible", prefix, tick)
+            rest = f"SATISFIED if {forever} and not ({violated}) else PENDING"
+        values.append(f"VIOLATED if {_violated('certain', prefix, tick)} else {rest}")
+    approximations = "certain = self.certain\n" + "possible = self.possible\n" * bool(
+        tick.satisfied_forever
+    )
+    text = f"{approximations}return ({', '.join(values)},)"
     require(reads(body_of(node, "verdicts", "self"), text), node)
 
 
 _SATISFIED_FOREVER = SIGNALS.index("satisfied_forever")
 
 
-def _violated(rail: str, prefix: str, tick: RowBehaviour) -> str:
+def _violated(approximation: str, prefix: str, tick: RowBehaviour) -> str:
     inevitable = (
-        f" or {rail}.{prefix}_violation_inevitable >= 0"
+        f" or {approximation}.{prefix}_violation_inevitable >= 0"
         if prefix in tick.violation_inevitable
         else ""
     )
-    return f"{rail}.{prefix}_broken >= 0{inevitable}"
+    return f"{approximation}.{prefix}_broken >= 0{inevitable}"
 
 
 def _is_text(node: ast.Assign, name: str) -> bool:

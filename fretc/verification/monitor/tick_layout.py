@@ -1,4 +1,4 @@
-"""A tick of a generated monitor: its rail's `advance`, statement by statement.
+"""A tick of a generated monitor: its approximation's `advance`, statement by statement.
 
 The logic of a tick is free over names that have a value at this tick; reading propositions, storing
 values for the next tick and setting marks have a fixed form.
@@ -22,14 +22,14 @@ from fretc.verification.monitor.statements import (
 from fretish.classes.frozen import dataclass
 
 FIXED = frozenset(
-    "self rail rows known doubt tick boolean VIOLATED SATISFIED PENDING".split(),
+    "self approximation rows known is_possible tick boolean VIOLATED SATISFIED PENDING".split(),
 )
 """Names that a tick uses itself, and names that it calls."""
 
 
 @dataclass(frozen=True, slots=True)
-class RailNames:
-    """Names of a rail."""
+class ApproximationNames:
+    """Names of an approximation."""
 
     cells: tuple[str, ...]
     windows: frozenset[str]
@@ -48,48 +48,54 @@ class RailNames:
 
 @dataclass(frozen=True, slots=True)
 class RowBehaviour:
-    """Behaviour of a rail at one row."""
+    """Behaviour of an approximation at one row."""
 
     inlined: str
-    """The same as statements of a step with known values, with `rail` as the only rail."""
+    """The same as statements of a step with known values, on the only `approximation`."""
     violation_inevitable: frozenset[str]
     """Prefixes of requirements whose violation can be inevitable."""
     satisfied_forever: frozenset[str]
     """Prefixes of requirements that can be satisfied for ever."""
 
 
-def check_advance(node: ast.stmt, rail: RailNames, inputs: Mapping[str, str]) -> RowBehaviour:
+def check_advance(
+    node: ast.stmt, approximation: ApproximationNames, inputs: Mapping[str, str]
+) -> RowBehaviour:
     """Check that the function does the visible work at each row, and nothing else.
 
     Args:
         node: the function.
-        rail: its rail.
+        approximation: its approximation.
         inputs: propositions in the order of a row, each with its parameter.
 
     Raises:
         UnexpectedCodeError: it does something else.
     """
     body = body_of(node, "advance", "self, rows: 'Iterable[Sequence[Any]]'")
-    place = next((i for i, part in enumerate(body) if isinstance(part, ast.For)), None)
-    require(place is not None, node)
-    assert place is not None
-    loop = body[place]
+    index = next((i for i, part in enumerate(body) if isinstance(part, ast.For)), None)
+    require(index is not None, node)
+    assert index is not None
+    loop = body[index]
     assert isinstance(loop, ast.For)
-    require(place > 2, node)
-    carried = tuple(_carried(body[:place], rail))
+    require(index > 2, node)
+    carried = tuple(_carried(body[:index], approximation))
     require(is_one_of(loop.iter, "rows") and not loop.orelse, loop)
     row = ", ".join(inputs.values()) + "," * (len(inputs) == 1)
     require(is_one_of(loop.target, f"({row})" if inputs else "_"), loop)
     require(bool(loop.body) and is_one_of(loop.body[0], "tick += 1"), loop)
-    bound = _RowStatements(rail, frozenset(carried)).check(loop.body[1:], inputs)
-    signals = _check_end(body[place + 1 :], rail, carried, bound)
+    bound = _RowStatements(approximation, frozenset(carried)).check(loop.body[1:], inputs)
+    signals = _check_end(body[index + 1 :], approximation, carried, bound)
     return RowBehaviour(
         inlined(body),
         frozenset(
-            prefix for prefix in rail.prefixes if f"{prefix}_violation_inevitable" in carried
+            prefix
+            for prefix in approximation.prefixes
+            if f"{prefix}_violation_inevitable" in carried
         ),
         frozenset(
-            prefix for prefix in rail.prefixes if signals[prefix]["satisfied_forever"] != "False"
+            prefix
+            for prefix in approximation.prefixes
+            if signals[prefix]["satisfied_forever"] != "False"
         ),
     )
 
@@ -106,23 +112,25 @@ def _stored(carried: Iterable[str]) -> Iterator[str]:
 def inlined(body: Sequence[ast.stmt]) -> str:
     """Statements of a step that equal `advance` at one row with known values.
 
-    Marks stay on the rail, because few ticks change one.
+    Marks stay on the approximation, because few ticks change one.
 
     Args:
         body: body of `advance`, in the layout that `check_advance` requires.
     """
-    place = next(i for i, part in enumerate(body) if isinstance(part, ast.For))
-    loop = body[place]
+    index = next(i for i, part in enumerate(body) if isinstance(part, ast.For))
+    loop = body[index]
     assert isinstance(loop, ast.For)
-    carried = [ast.unparse(each).partition(" = ")[0] for each in body[3:place]]
+    carried = [ast.unparse(each).partition(" = ")[0] for each in body[3:index]]
     marks = [name for name in carried if name.endswith(tuple(f"_{mark}" for mark in MARKS))]
     others = {f"self.{name} = {name}" for name in ("tick", *marks)}
-    statements = [each for each in body[3:place] if ast.unparse(each).split(" = ")[0] not in marks]
+    statements = [each for each in body[3:index] if ast.unparse(each).split(" = ")[0] not in marks]
     statements += [each for each in loop.body[1:] if not _is_of_odd_values(each)]
-    statements += [each for each in body[place + 2 : -1] if ast.unparse(each) not in others]
-    on_rail = _OnRail(marks)
-    lines = (ast.unparse(on_rail.visit(copy.deepcopy(statement))) for statement in statements)
-    return "\n".join(["rail.tick = tick = rail.tick + 1", *lines])
+    statements += [each for each in body[index + 2 : -1] if ast.unparse(each) not in others]
+    on_approximation = _OnApproximation(marks)
+    lines = (
+        ast.unparse(on_approximation.visit(copy.deepcopy(statement))) for statement in statements
+    )
+    return "\n".join(["approximation.tick = tick = approximation.tick + 1", *lines])
 
 
 def _is_of_odd_values(statement: ast.stmt) -> bool:
@@ -134,33 +142,39 @@ def _is_of_odd_values(statement: ast.stmt) -> bool:
             return False
 
 
-class _OnRail(ast.NodeTransformer):
-    """Transformer that puts `rail.` before names."""
+class _OnApproximation(ast.NodeTransformer):
+    """Transformer that puts `approximation.` before names."""
 
     def __init__(self, names: Collection[str]) -> None:
         self._names = names
 
     def visit_Name(self, node: ast.Name) -> ast.expr:
-        """`name` as `rail.name`, `self` as `rail`."""
+        """`name` as `approximation.name`, `self` as `approximation`."""
         if node.id in self._names:
-            return ast.Attribute(ast.Name("rail", ast.Load()), node.id, node.ctx)
-        return ast.Name("rail", node.ctx) if node.id == "self" else node
+            return ast.Attribute(ast.Name("approximation", ast.Load()), node.id, node.ctx)
+        return ast.Name("approximation", node.ctx) if node.id == "self" else node
 
 
-def _carried(statements: Sequence[ast.stmt], rail: RailNames) -> Iterator[str]:
-    """Names that are read from the rail before the first row."""
+def _carried(statements: Sequence[ast.stmt], approximation: ApproximationNames) -> Iterator[str]:
+    """Names that are read from the approximation before the first row."""
     fixed = [ast.unparse(statement) for statement in statements]
-    require(fixed[:3] == ["known = True", "doubt = self.doubt", "tick = self.tick"], statements[0])
-    allowed = (*rail.cells, *rail.marks)
+    require(
+        fixed[:3] == ["known = True", "is_possible = self.is_possible", "tick = self.tick"],
+        statements[0],
+    )
+    allowed = (*approximation.cells, *approximation.marks)
     for statement in statements[3:]:
         name = ast.unparse(statement).partition(" = ")[0]
         require(name in allowed and is_one_of(statement, f"{name} = self.{name}"), statement)
         yield name
-    require(all(f"{cell} = self.{cell}" in fixed for cell in rail.cells), statements[0])
+    require(all(f"{cell} = self.{cell}" in fixed for cell in approximation.cells), statements[0])
 
 
 def _check_end(
-    statements: Sequence[ast.stmt], rail: RailNames, carried: Sequence[str], bound: frozenset[str]
+    statements: Sequence[ast.stmt],
+    approximation: ApproximationNames,
+    carried: Sequence[str],
+    bound: frozenset[str],
 ) -> Mapping[str, Mapping[str, str]]:
     """Check the end of `advance`, which stores cells, marks and signals; returns these texts."""
     pending = {*_stored(carried)}
@@ -180,22 +194,24 @@ def _check_end(
         elif text in opened:  # Value of the last tick, not yet stored.
             require(f"self.{opened[text]}_open = {opened[text]}_open" in pending, statement)
         else:
-            prefix, values = _signals(statement, rail)
+            prefix, values = _signals(statement, approximation)
             require(prefix not in signals, statement)
             for value in values.values():
-                _check_value(value, bound - rail.windows, frozenset())
+                _check_value(value, bound - approximation.windows, frozenset())
             signals[prefix] = {name: ast.unparse(value) for name, value in values.items()}
             still_open = signals[prefix]["obligation_pending"]
             opened[normal(f"{prefix}_open = {prefix}_last if {still_open} else -1")] = prefix
-    require(not pending and signals.keys() == {*rail.prefixes}, first)
+    require(not pending and signals.keys() == {*approximation.prefixes}, first)
     return signals
 
 
-def _signals(statement: ast.stmt, rail: RailNames) -> tuple[str, Mapping[str, ast.expr]]:
+def _signals(
+    statement: ast.stmt, approximation: ApproximationNames
+) -> tuple[str, Mapping[str, ast.expr]]:
     """Prefix of a requirement, and its signals at the last tick."""
     match statement:
         case ast.Assign([ast.Attribute(ast.Name("self"), name)], ast.Tuple(values)):
-            require(name in rail.signals and len(values) == len(SIGNALS), statement)
+            require(name in approximation.signals and len(values) == len(SIGNALS), statement)
             return name.removesuffix("_signals"), dict(zip(SIGNALS, values, strict=True))
     raise UnexpectedStatementError(
         f"it is not laid out as fretc writes it: `{ast.unparse(statement)}`"
@@ -206,12 +222,12 @@ def _signals(statement: ast.stmt, rail: RailNames) -> tuple[str, Mapping[str, as
 class _RowStatements:
     """Statements that are executed for each row."""
 
-    rail: RailNames
+    approximation: ApproximationNames
     carried: frozenset[str]
 
     def check(self, statements: Sequence[ast.stmt], inputs: Mapping[str, str]) -> frozenset[str]:
         """Check the statements; returns the names that have a value after them."""
-        bound = {*self.rail.cells}
+        bound = {*self.approximation.cells}
         rest = [*statements]
         for proposition, name in inputs.items():
             both = name
@@ -224,7 +240,7 @@ class _RowStatements:
 if {_is_odd(name)}:
     if {name} is None:
         known = False
-        {both} = doubt
+        {both} = is_possible
     else:
         {name} = boolean({name}, {proposition!r})"""
             require(
@@ -255,18 +271,18 @@ if {_is_odd(name)}:
         return bound
 
     def _target(self, node: ast.expr) -> str:
-        fixed = {*FIXED, *self.rail.marks, *self.rail.windows}
+        fixed = {*FIXED, *self.approximation.marks, *self.approximation.windows}
         require(isinstance(node, ast.Name) and node.id not in fixed, node)
         assert isinstance(node, ast.Name)
         return node.id
 
     def _check(self, value: ast.expr, bound: frozenset[str]) -> None:
-        _check_value(value, bound - self.rail.windows, self.rail.windows)
+        _check_value(value, bound - self.approximation.windows, self.approximation.windows)
 
     def _remembers(self, statement: ast.stmt, bound: frozenset[str]) -> bool:
         """Check that it only stores the tick of an event in a mark."""
         stored = {n.id for n in ast.walk(statement) if isinstance(n, ast.Name)}
-        for mark in self.carried.intersection(self.rail.marks, stored):
+        for mark in self.carried.intersection(self.approximation.marks, stored):
             noted, (kind,) = f"{mark} = tick", (k for k in MARKS if mark.endswith(f"_{k}"))
             match statement:
                 case ast.Assign() if kind == "last" and is_one_of(statement, noted):

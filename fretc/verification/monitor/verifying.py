@@ -6,9 +6,9 @@ propositions and constants: `fretc.verification.monitor.text_check` checks that 
 so a step cannot depend on the number of the tick. The automaton defines verdicts for known values
 only. The other signals of a monitor (triggers, responses, open obligations, marks; all of them also
 with unknown values) are compared with the generated monitor, state by state
-(`fretc.verification.monitor.rails`), and its column program with the generated one, term by term
-(`fretc.verification.monitor.columns`); the generated text itself needs neither. The column program
-is also compared with the steps on random traces, some with unknown values.
+(`fretc.verification.monitor.approximations`), and its column program with the generated one, term
+by term (`fretc.verification.monitor.columns`); the generated text itself needs neither. The column
+program is also compared with the steps on random traces, some with unknown values.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from compiler.logic.claims import ClaimOutcome, ClaimTrace, not_checked, proved,
 from compiler.logic.orders import Exclusion
 from compiler.targets.python import monitor as target
 from compiler.targets.python.names import prefixes_of
-from fretc.verification.monitor import front_terms, rails
+from fretc.verification.monitor import approximations, front_terms
 from fretc.verification.monitor.columns import Disagreement, TermTable, Word, agreed
 from fretc.verification.monitor.equivalence import (
     DifferingTrace,
@@ -107,10 +107,10 @@ def _compared(
     places = [i for i, each in enumerate(monitor.REQUIREMENTS) if each.id == requirement.id]
     if not places:
         return not_checked("the monitor is for other requirements")
-    place = places[0]
+    index = places[0]
     atoms = tuple(dict.fromkeys((*atoms_of(requirement.sentence), *monitor.PROPOSITIONS)))
     needed, cells = _needed(requirement, text, monitor, atoms)
-    machine = SlicedMonitor(Stepped(monitor, place, atoms, cells), len(atoms) - len(needed))
+    machine = SlicedMonitor(Stepped(monitor, index, atoms, cells), len(atoms) - len(needed))
     result = lock_step(requirement, machine, needed, limit)
     if isinstance(result, str):
         return not_checked(result)
@@ -119,7 +119,7 @@ def _compared(
     generated = target.text(requirement)
     if text != generated:
         (expected,) = load("generated", generated).REQUIREMENTS
-        if tuple(monitor.REQUIREMENTS[place]) != tuple(expected):
+        if tuple(monitor.REQUIREMENTS[index]) != tuple(expected):
             return not_checked(
                 "its verdicts are the same, but it states another sentence or deadline"
             )
@@ -130,7 +130,7 @@ def _compared(
         requirement,
         needed,
         Disagreement,
-        lambda more: agreed(requirement, monitor, place, needed, more),
+        lambda more: agreed(requirement, monitor, index, needed, more),
     )
     if isinstance(ticks, Disagreement):
         apart = f"its column program and its steps differ{noted(note)}"
@@ -138,7 +138,7 @@ def _compared(
     if text == generated or (whole is not None and _is_like(whole, text)):
         return _proved(result, ticks)
     states = _compared_with_generated(
-        requirement, generated, text, monitor, place, (atoms, len(needed)), limit
+        requirement, generated, text, monitor, index, (atoms, len(needed)), limit
     )
     return _proved(result, ticks, states) if isinstance(states, int) else states
 
@@ -289,10 +289,10 @@ def _differing(
     reference = load("written", written)
     inputs, others = (getattr(each, "VARIABLES", None) for each in (monitor, reference))
     if inputs is not None and others is not None and _kinds(inputs) == _kinds(others):
-        found = front_terms.differing(monitor, reference, (text, written), names)
-        if found is not None:
-            word = tuple(tuple(row.get(name) for name in atoms) for row in found.truths)
-            return _disagreement(atoms, word, found.fault, found.values)
+        difference = front_terms.differing(monitor, reference, (text, written), names)
+        if difference is not None:
+            word = tuple(tuple(row.get(name) for name in atoms) for row in difference.truths)
+            return _disagreement(atoms, word, difference.fault, difference.values)
     wrong = next(name for name in names if actual.get(name) != expected[name])
     return not_checked(f"`{wrong}` is not computed from the variables as in generated code")
 
@@ -306,7 +306,7 @@ def _compared_with_generated(
     generated: str,
     text: str,
     monitor: Monitor,
-    place: int,
+    index: int,
     atoms: tuple[Sequence[str], int],
     limit: int,
 ) -> int | ClaimOutcome:
@@ -317,14 +317,14 @@ def _compared_with_generated(
         generated: generated text.
         text: text of the monitor.
         monitor: monitor loaded from the text.
-        place: index of the requirement in the monitor.
+        index: index of the requirement in the monitor.
         atoms: all propositions, and how many of them, counted from the first, the requirement
             depends on.
         limit: maximum number of states.
     """
     names, count = atoms
-    if count > rails.MOST_PROPOSITIONS:
-        most = rails.MOST_PROPOSITIONS
+    if count > approximations.MOST_PROPOSITIONS:
+        most = approximations.MOST_PROPOSITIONS
         return not_checked(
             f"it is not the generated monitor, and {count} propositions, more than "
             f"{most}, are too many to compare both with unknown values"
@@ -332,23 +332,25 @@ def _compared_with_generated(
     reference = load("generated", generated)
     never = impossible_combinations(requirement)
 
-    def compare_without(more: Sequence[Exclusion]) -> rails.Equivalent | rails.Distinguished | None:
+    def compare_without(
+        more: Sequence[Exclusion],
+    ) -> approximations.Equivalent | approximations.Distinguished | None:
         most = min(limit, MOST_SEARCHED) if more else limit
         every = (*never, *more)
-        return rails.compared(monitor, place, reference, names[:count], most, every)
+        return approximations.compared(monitor, index, reference, names[:count], most, every)
 
     comparison, note = with_numeric_counterexample(
-        requirement, names[:count], rails.Distinguished, compare_without
+        requirement, names[:count], approximations.Distinguished, compare_without
     )
     match comparison:
         case None:
             return not_checked(f"with unknown values there are more than {limit} states")
-        case rails.Distinguished(word, signal):
+        case approximations.Distinguished(word, signal):
             fault = f"the generated monitor has another {signal}{noted(note)}"
             return _disagreement(names, word, fault)
-        case rails.Equivalent(states):
+        case approximations.Equivalent(states):
             terms = TermTable()
-            if terms.of(text, place) == terms.of(generated, 0):
+            if terms.of(text, index) == terms.of(generated, 0):
                 return states
             return not_checked(
                 "its column program is not the generated one: it agrees with the steps on random "

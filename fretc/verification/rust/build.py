@@ -9,7 +9,7 @@ from __future__ import annotations
 import shutil
 from collections.abc import Sequence
 
-from fretc.verification.compiled.readings import RailReading
+from fretc.verification.compiled.readings import ApproximationReading
 from fretc.verification.compiled.tools import Binary, compiled
 
 FLAGS = tuple(
@@ -34,7 +34,7 @@ def built(
     Args:
         program: path of rustc.
         text: text of `lib.rs`.
-        cells: fields of a rail.
+        cells: fields of an approximation.
         inputs: fields of the inputs.
         outcomes: fields of the outcomes.
 
@@ -54,16 +54,16 @@ def built(
 
 
 def _layout(cells: Sequence[str]) -> str:
-    """Rust module that exports the offsets of a rail's private fields."""
+    """Rust module that exports the offsets of an approximation's private fields."""
     places = "".join(
-        f"        core::mem::offset_of!(Rail, {cell}), size(|rail| &rail.{cell}),\n"
+        f"        core::mem::offset_of!(Approximation, {cell}), size(|cells| &cells.{cell}),\n"
         for cell in cells
     )
     return f"""
 pub mod fretc_layout {{
-    use super::{{Monitor, Rail}};
+    use super::{{Monitor, Approximation}};
 
-    const fn size<T>(_: fn(&Rail) -> &T) -> usize {{
+    const fn size<T>(_: fn(&Approximation) -> &T) -> usize {{
         core::mem::size_of::<T>()
     }}
 
@@ -78,7 +78,7 @@ def _library(cells: int, inputs: Sequence[str], outcomes: Sequence[str]) -> str:
     """Rust crate with a C interface: inputs are a byte each, and outcomes as in C."""
     given = ", ".join(f"{name}: TRUTHS[*values.add({i}) as usize]" for i, name in enumerate(inputs))
     told = "".join(f"    told.add({i}).write(of(found.{n}));\n" for i, n in enumerate(outcomes))
-    _, *truths = RailReading._fields
+    _, *truths = ApproximationReading._fields
     bits = ", ".join(f"reading.{name}.into()" for name in truths)
     return f"""use std::mem::size_of;
 use {_CRATE}::{{fretc_layout::PLACES, Inputs, Monitor, Outcome, Reading}};
@@ -86,29 +86,29 @@ use {_CRATE}::{{fretc_layout::PLACES, Inputs, Monitor, Outcome, Reading}};
 const TRUTHS: [Option<bool>; 3] = [Some(false), Some(true), None];
 
 #[repr(C)]
-pub struct Rail {{
+pub struct Approximation {{
     left: i32,
     truths: [u8; {len(truths)}],
 }}
 
 #[repr(C)]
 pub struct Told {{
-    certain: Rail,
-    possible: Rail,
+    certain: Approximation,
+    possible: Approximation,
     verdict: u32,
     finite: u8,
     obligation_pending: u8,
 }}
 
-fn rail(reading: Reading) -> Rail {{
+fn approximation(reading: Reading) -> Approximation {{
     let left = reading.left.map_or(-1, |left| i32::try_from(left).unwrap_or(i32::MIN));
-    Rail {{ left, truths: [{bits}] }}
+    Approximation {{ left, truths: [{bits}] }}
 }}
 
 fn of(outcome: Outcome) -> Told {{
     Told {{
-        certain: rail(outcome.certain),
-        possible: rail(outcome.possible),
+        certain: approximation(outcome.certain),
+        possible: approximation(outcome.possible),
         verdict: outcome.verdict as u32,
         finite: outcome.finite.map_or(2, u8::from),
         obligation_pending: outcome.obligation_pending.map_or(2, u8::from),

@@ -29,7 +29,7 @@ def checked(given: SourceText, requirements: Sequence[FormalizedRequirement]) ->
     own_rules = implemented([id for id, _ in _OUTCOMES.findall(given.text)], requirements)
     files = TARGET.emit(own_rules, TargetOptions(one_file=True))
     own = next(file.text for file in files if file.path.name == "lib.rs")
-    cells, inputs = _fields(own, "struct Rail"), _fields(own, "pub struct Inputs")
+    cells, inputs = _fields(own, "struct Approximation"), _fields(own, "pub struct Inputs")
     outcomes = tuple(name for _, name in _OUTCOMES.findall(own))
     form = check_layout(given.text, own, cells, inputs, outcomes)
     is_original = LEXIS.tokens(given.text) == LEXIS.tokens(own)

@@ -53,7 +53,7 @@ def check_layout(
     Args:
         text: text of the library.
         written: text that fretc writes for the same requirements.
-        cells: fields of a rail.
+        cells: fields of an approximation.
         inputs: fields of the inputs.
         outcomes: fields of the outcomes.
 
@@ -76,12 +76,12 @@ def check_layout(
 
 def _statements(body: Tokens) -> list[Tokens]:
     """Heads of branches up to their brace, other statements to the semicolon; then the rest."""
-    found, start = list[Tokens](), 0
+    statements, start = list[Tokens](), 0
     while start < len(body):
         end = _end(body, start)
-        found.append(body[start : end + 1])
+        statements.append(body[start : end + 1])
         start = end + 1
-    return found
+    return statements
 
 
 def _end(body: Tokens, start: int) -> int:

@@ -59,44 +59,44 @@ class Log:
     def arrivals(self, topics: Collection[str]) -> Iterator[Arrival | Event | Idle]:
         """The messages in the order of the file; those of a chunk by their log times."""
         self._wanted = frozenset(topics)
-        place = Text(self.name, "").span()
+        span = Text(self.name, "").span()
         try:
             with open_regular(self._path) as stream:
                 yield Opened(self.name)
-                yield from self._read(stream, place)
+                yield from self._read(stream, span)
         except FileNotFoundError:
-            yield Problem(diagnostic("no_such_log", place))
+            yield Problem(diagnostic("no_such_log", span))
         except IsADirectoryError:
-            yield Problem(diagnostic("log_is_directory", place))
+            yield Problem(diagnostic("log_is_directory", span))
         except OSError as error:
-            yield Problem(storage_diagnostics.unreadable(error, place))
+            yield Problem(storage_diagnostics.unreadable(error, span))
 
-    def _read(self, stream: BinaryIO, place: Span) -> Iterator[Arrival | Event | Idle]:
-        start = yield from self._whole(stream, 0, len(MAGIC), place)
+    def _read(self, stream: BinaryIO, span: Span) -> Iterator[Arrival | Event | Idle]:
+        start = yield from self._whole(stream, 0, len(MAGIC), span)
         if start is None:
             return
         if start != MAGIC:
-            yield Problem(log_diagnostics.not_a_log(start, place))
+            yield Problem(log_diagnostics.not_a_log(start, span))
             return
         at = len(MAGIC)
         while not self._closed.is_set():
-            head = yield from self._whole(stream, at, HEAD.size, place)
+            head = yield from self._whole(stream, at, HEAD.size, span)
             if head is None:
                 return
             opcode, length = HEAD.unpack(head)
             if opcode in (Opcode.DATA_END, Opcode.FOOTER):
                 return
             if length > LARGEST or opcode == 0:
-                yield Problem(_broken(at, "a record has an impossible length", place))
+                yield Problem(_broken(at, "a record has an impossible length", span))
                 return
-            content = yield from self._whole(stream, at + HEAD.size, length, place)
+            content = yield from self._whole(stream, at + HEAD.size, length, span)
             if content is None:
                 return
-            yield from self._record(opcode, content, at, place)
+            yield from self._record(opcode, content, at, span)
             at += HEAD.size + length
 
     def _whole(
-        self, stream: BinaryIO, at: int, length: int, place: Span
+        self, stream: BinaryIO, at: int, length: int, span: Span
     ) -> Generator[Event | Idle, None, bytes | None]:
         """So many bytes, once they have been written."""
         while True:
@@ -113,12 +113,12 @@ class Log:
             if changed is None and len(bytes_before) == size and bytes_before != self._before:
                 changed = "another log was written over it"
             if changed is not None:
-                yield Problem(_broken(at, changed, place))
+                yield Problem(_broken(at, changed, span))
                 return None
             if self._closed.is_set():
                 return None
             if not self._follow:
-                yield Problem(_broken(at, "it breaks off" if file_size else "it is empty", place))
+                yield Problem(_broken(at, "it breaks off" if file_size else "it is empty", span))
                 yield Missed(self._latest, self._latest, 1)
                 return None
             yield Idle(None)
@@ -138,21 +138,21 @@ class Log:
         return None
 
     def _record(
-        self, opcode: int, content: bytes, at: int, place: Span
+        self, opcode: int, content: bytes, at: int, span: Span
     ) -> Iterator[Arrival | Event]:
         try:
             match opcode:
                 case Opcode.CHUNK:
-                    yield from self._chunk(parse(Chunk.read, content), at, place)
+                    yield from self._chunk(parse(Chunk.read, content), at, span)
                 case _:
                     arrival = self._single(opcode, content)
                     if arrival is not None:
                         yield arrival
         except BrokenError as error:
-            yield Problem(_broken(at, str(error), place))
+            yield Problem(_broken(at, str(error), span))
             yield Missed(self._latest, self._latest, 1)
 
-    def _chunk(self, chunk: Chunk, at: int, place: Span) -> Iterator[Arrival | Event]:
+    def _chunk(self, chunk: Chunk, at: int, span: Span) -> Iterator[Arrival | Event]:
         arrivals: list[Arrival] = []
         try:
             data = unpacked(chunk)
@@ -161,7 +161,7 @@ class Log:
                 if arrival is not None:
                     arrivals.append(arrival)
         except BrokenError as error:
-            yield Problem(_broken(at, str(error), place))
+            yield Problem(_broken(at, str(error), span))
             yield Missed(chunk.message_start_time, chunk.message_end_time, 1)
         yield from sorted(arrivals, key=_log_time)
 
@@ -206,5 +206,5 @@ def _log_time(arrival: Arrival) -> int:
     return arrival.log_time
 
 
-def _broken(at: int, why: str, place: Span) -> Diagnostic:
-    return diagnostic("watched_log_breaks", place, at=at, why=why)
+def _broken(at: int, why: str, span: Span) -> Diagnostic:
+    return diagnostic("watched_log_breaks", span, at=at, why=why)

@@ -69,8 +69,8 @@ class Fields:
             isinstance(value, kind) and not (kind is int and isinstance(value, bool))
         ):
             return value
-        place = self.tables.value(*at)
-        self._say(diagnostic("field_of_wrong_kind", place, field=at[-1], form=form))
+        span = self.tables.value(*at)
+        self._say(diagnostic("field_of_wrong_kind", span, field=at[-1], form=form))
         return None
 
     def _choice(

@@ -206,8 +206,8 @@ class InterceptorTables(Fields):
     def _ros(self, table: Mapping[str, Any]) -> int:
         value = self._field(table, ("interceptor", "ros"), int, "1 or 2")
         if value is not None and value not in (1, 2):
-            place = self.tables.value("interceptor", "ros")
-            self._say(diagnostic("bad_ros_version", place, value=value))
+            span = self.tables.value("interceptor", "ros")
+            self._say(diagnostic("bad_ros_version", span, value=value))
         return 2 if value is None else value
 
     # [assume]
@@ -242,8 +242,8 @@ class InterceptorTables(Fields):
     def _lost(self, table: Mapping[str, Any]) -> int:
         value = self._field(table, ("assume", "lost"), int, "a whole number of messages")
         if value is not None and value < 0:
-            place = self.tables.value("assume", "lost")
-            self._say(diagnostic("negative_lost", place))
+            span = self.tables.value("assume", "lost")
+            self._say(diagnostic("negative_lost", span))
         return value or 0
 
     # [[assume.requirement]]

@@ -24,8 +24,8 @@ class LabelTable(Fields):
         table = self.tables.data.get("run", {})
         labels = table.get("label", {}) if isinstance(table, dict) else None
         if not isinstance(labels, dict) or len(labels) > MOST_LABELS:
-            place = self.tables.value("run")
-            self._say(diagnostic("bad_labels", place, most=MOST_LABELS, form=_LABEL_FORM))
+            span = self.tables.value("run")
+            self._say(diagnostic("bad_labels", span, most=MOST_LABELS, form=_LABEL_FORM))
             return {}
         self._check_keys(table, _RUN, "[run]", "run")
         return {name: self._label_sources(name, written) for name, written in labels.items()}
@@ -41,9 +41,9 @@ class LabelTable(Fields):
         if wrong is None and not 0 < len(sources) <= _MOST_SOURCES:
             wrong = f"a label has 1 to {_MOST_SOURCES} sources"
         if wrong is not None:
-            place = self.tables.value(*at)
+            span = self.tables.value(*at)
             self._say(
-                diagnostic("bad_label_source", place, name=name, wrong=wrong, form=_LABEL_FORM)
+                diagnostic("bad_label_source", span, name=name, wrong=wrong, form=_LABEL_FORM)
             )
             return ()
         return tuple(source for source in sources if isinstance(source, LabelSource))

@@ -63,26 +63,26 @@ class PropositionTables(Fields):
 
     def _truth(self, written: e.Expression, at: tuple[str, ...]) -> e.Expression | None:
         """The expression with resolved words; None if it is no correct Boolean expression."""
-        place = self.tables.value(*at, "expr")
+        span = self.tables.value(*at, "expr")
         unknown = self._tables("signal").keys() - self._signals.keys()
         if any(name.id in unknown for name in e.names(written)):
             return None  # The signal already has a diagnostic.
-        expression = resolve_words(written, self._signals, place)
+        expression = resolve_words(written, self._signals, span)
         if isinstance(expression, Diagnostic):
             self.notes.diagnostics.append(expression)
             return None
         kinds = {name: signal.unit.dimension for name, signal in self._signals.items()}
         if isinstance(expression, e.Name) and expression.id in kinds:
             return expression
-        kind = binding.dimension(expression, kinds, place)
+        kind = binding.dimension(expression, kinds, span)
         if isinstance(kind, Diagnostic):
             self.notes.diagnostics.append(kind)
         elif kind is not None:
-            self._say(diagnostic("proposition_is_number", place))
+            self._say(diagnostic("proposition_is_number", span))
         else:
             known = {name.id: self._signals.get(name.id) for name in e.names(expression)}
             percents = {n for n, each in known.items() if each and each.unit == units.PERCENT}
-            self.notes.diagnostics.extend(binding.plain_percents(expression, percents, place))
+            self.notes.diagnostics.extend(binding.plain_percents(expression, percents, span))
         return expression if kind is None else None
 
     def _ticks_fit(
@@ -91,14 +91,14 @@ class PropositionTables(Fields):
         """Whether `pre` is used where ticks exist: with `agg = "last"`, and not inside `for`."""
         if not binding.ticks_back(expression):
             return True
-        place = self.tables.value(*at, "expr")
+        span = self.tables.value(*at, "expr")
         if table.get("agg", Aggregate.LAST) != Aggregate.LAST:
             self._say(diagnostic("pre_needs_last", self.tables.value(*at, "agg")))
         elif any(
             isinstance(part, e.Persistence) and binding.ticks_back(part)
             for part in e.parts(expression)
         ):
-            self._say(diagnostic("pre_inside_for", place))
+            self._say(diagnostic("pre_inside_for", span))
         else:
             return True
         return False

@@ -125,12 +125,12 @@ class VariableTables(Fields):
         text = self._field(table, at, str, 'an expression in quotes: `"1.5 m/s"`')
         if text is None:
             return None, None
-        place = self._inside(at, text)
-        value = parse_value(place)
+        span = self._inside(at, text)
+        value = parse_value(span)
         if isinstance(value, Diagnostic):
             self.notes.diagnostics.append(value)
-            return None, place
-        return value, place
+            return None, span
+        return value, span
 
     def _check_definitions(self, variables: Mapping[str, Variable], component: str) -> None:
         """F342 for a cyclic definition, F343 for a name that is also a signal or a proposition.

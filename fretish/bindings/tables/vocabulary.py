@@ -39,8 +39,8 @@ class ValuesField(Fields):
                     most=_MOST_WORDS,
                 )
             )
-        for place, word in enumerate(values[:_MOST_WORDS]):
-            self._check_word(word, values[:place], at)
+        for index, word in enumerate(values[:_MOST_WORDS]):
+            self._check_word(word, values[:index], at)
         if len(self.notes.diagnostics) > before:
             return (), ()
         return tuple(values), tuple(numbers)
@@ -52,21 +52,21 @@ class ValuesField(Fields):
             or '"' in word
             or not 0 < len(word) <= _LONGEST_WORD
         ):
-            place = self._last_in(at, word)
-            self._say(diagnostic("bad_word", place, longest=_LONGEST_WORD))
+            span = self._last_in(at, word)
+            self._say(diagnostic("bad_word", span, longest=_LONGEST_WORD))
         elif word in before:
             self._say(diagnostic("word_twice", self._last_in(at, word), word=word))
 
     def _check_numbers(self, written: Mapping[str, Any], at: tuple[str, ...]) -> None:
         words: dict[int, str] = {}
         for word, number in written.items():
-            place = self.tables.value(*at, word)
+            span = self.tables.value(*at, word)
             if not isinstance(number, int) or isinstance(number, bool) or abs(number) >= _EXACT:
-                self._say(diagnostic("bad_number_of_word", place, word=word, key=as_key(word)))
+                self._say(diagnostic("bad_number_of_word", span, word=word, key=as_key(word)))
             elif number in words:
                 self._say(
                     diagnostic(
-                        "same_number_of_words", place, other=words[number], word=word, number=number
+                        "same_number_of_words", span, other=words[number], word=word, number=number
                     )
                 )
             else:

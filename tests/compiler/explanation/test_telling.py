@@ -29,7 +29,7 @@ def test_triggers_answers_violations_and_open_demands_are_those_of_the_definitio
             assert found.open == expected.open, (template, columns)
             steps(machine, columns)
             obligation_pending = bool(expected.open) or LENGTH - 1 in expected.triggers
-            assert machine.standings()[0].obligation_pending is obligation_pending, (
+            assert machine.statuses()[0].obligation_pending is obligation_pending, (
                 template,
                 columns,
             )

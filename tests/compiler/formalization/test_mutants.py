@@ -25,7 +25,7 @@ from compiler.targets.python import monitor as target
 from fretc.verification.monitor.verifying import NotAMonitorError
 from fretish import syntax as s
 from monitors.kernel import Monitor
-from monitors.kernel.stepping import Standing
+from monitors.kernel.stepping import RequirementStatus
 from monitors.kernel.verdicts import Truth
 from monitors.loading import load
 from tests.effort import FULL
@@ -111,7 +111,7 @@ Written = Callable[[], str | None]
 def of_text(text: str) -> Iterator[tuple[str, Written]]:
     """All mistakes in the logic of a text: in its cells, its tick, its signals and its columns.
 
-    A mistake in the tick of the rail is in the step, too, else the text is refused for that.
+    A mistake in the tick of `advance` is in the step, too, else the text is refused for that.
     """
     begun = text.index("\n", text.index(MARK))
     head, module = text[: begun + 1], ast.parse(text[begun:])
@@ -281,10 +281,10 @@ def telling(machine: Monitor, trace: dict[str, list[Truth]]) -> object:
     """All that a monitor tells of a trace: at each tick, and at its end of single demands."""
     machine.reset()
     names = tuple(machine.PROPOSITIONS)
-    told: list[tuple[Standing, ...]] = []
+    told: list[tuple[RequirementStatus, ...]] = []
     for tick in range(16):
         machine.advance([tuple(trace[name][tick] for name in names)])
-        told.append(machine.standings())
+        told.append(machine.statuses())
     columns = {name: trace[name] for name in names} or {"q": trace["q"]}
     return told, over(machine, columns)
 

@@ -306,6 +306,8 @@ def stepped(
     found = []
     for tick in range(ticks):
         machine.advance([tuple(values[tick] for values in columns.values())])
-        must, may = machine.must.signals()[0], machine.may.signals()[0]
-        found.append((truth(must.trigger, may.trigger), truth(must.answer, may.answer)))
+        certain, possible = machine.certain.signals()[0], machine.possible.signals()[0]
+        found.append(
+            (truth(certain.trigger, possible.trigger), truth(certain.answer, possible.answer))
+        )
     return found

@@ -28,10 +28,10 @@ def test_a_clock_is_as_old_as_the_open_demand() -> None:
             made = lengthened(plain, known)
             most = made.requirements[0].deadline_ticks
             assert most is not None
-            state, doubt = initial(made), choose.choice([False, True])
+            state, is_possible = initial(made), choose.choice([False, True])
             for _ in range(30):
                 row = {name: choose.choice([False, False, True, None]) for name in one.watched}
-                state = step(made, state, row, doubt)
+                state = step(made, state, row, is_possible)
                 opened = state.marks[0].open
                 age = min(state.tick - opened, most + 1) if opened >= 0 else -1
                 told = int(state.values[known["R1"]])

@@ -40,10 +40,10 @@ def of(*formulas: f.Formula) -> Program:
     return program(watches)
 
 
-def states(made: Program, rows: Sequence[Mapping[str, Truth]], doubt: bool) -> list[State]:
+def states(made: Program, rows: Sequence[Mapping[str, Truth]], is_possible: bool) -> list[State]:
     state, found = initial(made), []
     for row in rows:
-        state = step(made, state, row, doubt)
+        state = step(made, state, row, is_possible)
         found.append(state)
     return found
 
@@ -56,21 +56,21 @@ def triggers(signals: tuple[Signals[bool], ...]) -> list[bool]:
 def test_a_program_says_what_its_formulas_say(
     formulas: list[f.Formula], rows: list[dict[str, bool]]
 ) -> None:
-    for tick, state in enumerate(states(of(*formulas), rows, doubt=False)):
+    for tick, state in enumerate(states(of(*formulas), rows, is_possible=False)):
         assert triggers(state.signals) == [holds(each, rows, tick) for each in formulas]
 
 
 @given(FORMULAS, three_valued(*FORMULA_ATOMS))
-def test_two_rails_are_the_logic_of_kleene(
+def test_two_approximations_are_the_logic_of_kleene(
     formula: f.Formula, rows: list[dict[str, Truth]]
 ) -> None:
     columns = {name: [row[name] for row in rows] for name in FORMULA_ATOMS}
     ticks, made = packed(columns)
     expected = evaluate_unknown(formula, made, ticks)
-    certain, possible = (states(of(formula), rows, doubt) for doubt in (False, True))
-    for tick, (must, may) in enumerate(zip(certain, possible, strict=True)):
-        assert must.signals[0].trigger is bool(expected.true >> tick & 1)
-        unknown = may.signals[0].trigger and not must.signals[0].trigger
+    certain, possible = (states(of(formula), rows, is_possible) for is_possible in (False, True))
+    for tick, (low, high) in enumerate(zip(certain, possible, strict=True)):
+        assert low.signals[0].trigger is bool(expected.true >> tick & 1)
+        unknown = high.signals[0].trigger and not low.signals[0].trigger
         assert unknown is bool(expected.unknown >> tick & 1)
 
 

@@ -44,11 +44,11 @@ LIKE = """
     T_2 t v_T is_T not_T not_not_T eq is not _ __proto__ constructor toString hasOwnProperty valueOf
     printf malloc abort exit memcpy strlen main errno NULL EOF ESTOP print len object type None Some
     Ok Err Vec drop panic Option Result Box u8 usize console document window Object Array Math JSON
-    require module exports process p_p draw_p p_T s_T n_T f_T h_T x field tick ticks state rail now
-    inputs outcomes outcome word must may CELLS LITERALS PROPOSITIONS Window previous Tick Demand m
-    Monitor Run w k c monitor_r1 the_monitor_r1 violated unmet failed held phase enforced inside
-    LAST FTP TRUE True FALSE xor int8_t UINT32_C fretc_truth FRETC_TRUE R1_MONITOR_H r1_init
-    _earlier_1
+    require module exports process p_p draw_p p_T s_T n_T f_T h_T x field tick ticks state now
+    approximation inputs outcomes outcome word certain possible CELLS LITERALS PROPOSITIONS Window
+    previous Tick Demand m Monitor Run w k c monitor_r1 the_monitor_r1 violated unmet failed held
+    phase enforced inside LAST FTP TRUE True FALSE xor int8_t UINT32_C fretc_truth FRETC_TRUE
+    R1_MONITOR_H r1_init _earlier_1
 """.split()
 """Near the reserved words; of libraries, preludes and globals; and of the texts themselves."""
 

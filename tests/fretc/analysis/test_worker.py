@@ -46,7 +46,7 @@ def test_a_process_that_dies_is_replaced() -> None:
     jobs = [job("a"), job("b", lambda: os._exit(6)), job("c")]
     assert told(jobs) == [
         ("a", "0 before"), ("a", "end"), ("b", "2 before"),
-        ("b", "lost: it took more than 4 GiB of memory, or failed (exit status 6)"),
+        ("b", "lost: it took more memory than 4 GiB, or failed (exit status 6)"),
         ("c", "4 before"), ("c", "end"),
     ]  # fmt: skip
 
@@ -62,7 +62,7 @@ def test_a_full_table_of_diagrams_loses_one_answer() -> None:
         ("a", "0 before"),
         (
             "a",
-            "lost: it took more than 4 GiB of memory, or more decision diagrams than their table "
+            "lost: it took more memory than 4 GiB, or more decision diagrams than their table "
             "holds",
         ),
         ("b", "2 before"),
@@ -147,5 +147,8 @@ def test_a_question_without_enough_memory_stays_open(monkeypatch: pytest.MonkeyP
     found = analysis.analyze(requirements("the sw shall always satisfy x"), ROLES)
     assert found.open == (
         OpenQuestion("first", "0 before"),
-        OpenQuestion("a", "there is not enough memory for its decision diagrams"),
+        OpenQuestion(
+            "a",
+            "it took more memory than there is, or more decision diagrams than their table holds",
+        ),
     )

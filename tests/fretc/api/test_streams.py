@@ -171,3 +171,15 @@ def test_a_requirement_that_no_run_can_show_is_refused_and_not_left_out(
 def test_a_signal_that_is_not_declared_is_refused(project: fretc.Project) -> None:
     with pytest.raises(fretc.Refusal, match="F309 the bindings declare no signal `y`"):
         fretc.Stream(project).add("y", 1, 1.0)
+
+
+def test_the_former_name_of_the_statuses_of_a_tick_gives_them_with_a_warning(
+    project: fretc.Project,
+) -> None:
+    stream = fretc.Stream(project)
+    stream.add("x", 1, 2.0)
+    (tick, *_) = stream.until(30)
+    with pytest.warns(DeprecationWarning, match="`standings` is now `statuses`") as told:
+        assert tick.standings == tick.statuses
+    assert told[0].filename == __file__
+    assert len(tick.statuses) == len(SENTENCES)

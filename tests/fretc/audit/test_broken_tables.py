@@ -18,9 +18,9 @@ from hypothesis import strategies as st
 from compiler.emit import TARGETS
 from compiler.project.folder import load
 from compiler.project.project import Project
-from fretc.audit.bases import bases
 from fretc.audit.bindings.draft import missing_propositions
 from fretc.audit.plan import Plan, planned
+from fretc.audit.project_inputs import all_verdict_inputs
 from fretc.terminal.output import EXIT_OK, EXIT_USAGE, EXIT_VIOLATION
 from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
@@ -157,13 +157,15 @@ def verdicts_of(plan: Plan) -> dict[str, Any]:
     """All that the verdicts on each claim rest on, but for the log."""
     declared, verdicts = plan.declarations, {}
     for claim in plan.claims:
-        basis = {kind: text for kind, text in claim.basis.items() if kind != "topics"}
+        verdict_inputs = {
+            kind: text for kind, text in claim.verdict_inputs.items() if kind != "topics"
+        }
         names = [
             name for name in declared.propositions if re.search(rf"\b{name}\b", claim.sentence)
         ]
         propositions = [declared.propositions[name] for name in names]
         signals = [declared.signals[name] for each in propositions for name in each.signals]
-        verdicts[claim.id] = (claim.monitor, basis, declared.clock, propositions, signals)
+        verdicts[claim.id] = (claim.monitor, verdict_inputs, declared.clock, propositions, signals)
     return verdicts
 
 
@@ -369,13 +371,13 @@ def test_nothing_is_assumed_of_a_stand_that_is_not_known(case: Case) -> None:
     assert flawed.mistakes["proposition", "still"] == (mistake,)
 
 
-def test_a_basis_is_what_it_is_without_the_broken_table() -> None:
+def test_verdict_inputs_are_what_they_are_without_the_broken_table() -> None:
     case = ("proposition", "idle", "F308")
     flawed = project(broken([case]))
     data = tomllib.loads(BINDINGS)
     del data["proposition"]["idle"]
     without = project(tomli_w.dumps(data))
-    assert [*bases(flawed).values()] == [*bases(without).values()]
+    assert [*all_verdict_inputs(flawed).values()] == [*all_verdict_inputs(without).values()]
 
 
 def test_a_draft_in_place_of_broken_bindings_has_all_propositions() -> None:

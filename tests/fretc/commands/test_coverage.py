@@ -65,10 +65,10 @@ def test_logs_and_their_evidence_show_the_same(robot: Fretc) -> None:
     schema = json.loads((template_root() / "json/coverage.schema.json").read_text("utf-8"))
     jsonschema.validate(found, schema)
     assert found["runs"] == ["idle.mcap", "late.mcap"]
-    standings = situations(run.out)
-    assert standings["answered-at-last-tick"] == "seen"
-    assert standings["never-triggered"] == "seen"
-    assert standings["missed-by-one"] == "never"
+    statuses = situations(run.out)
+    assert statuses["answered-at-last-tick"] == "seen"
+    assert statuses["never-triggered"] == "seen"
+    assert statuses["missed-by-one"] == "never"
     assert found["least_runs"] == [0, 1]
     assert robot("audit", "idle.mcap", "late.mcap").status == 3
     assert robot("coverage", "--format", "json").out == run.out

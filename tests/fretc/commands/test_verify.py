@@ -173,7 +173,7 @@ def test_why_a_file_is_not_checked_is_told_once(fretc: Fretc, r1: str) -> None:
     write("r2.fret", R1)
     file = "build/monitors.mjs"
     assert fretc(r1, "r2.fret", "--emit", "js", "--one-file").status == 0
-    edited(file, "rail.signals = [", "globalThis.x = 1; rail.signals = [")
+    edited(file, "approximation.signals = [", "globalThis.x = 1; approximation.signals = [")
     *_, first, second = fretc("verify", "--file", file, r1, "r2.fret").out.splitlines()
     assert first.startswith(f"? r1  monitor  not checked: {CLAIM}; ")
     assert second == "? r2  monitor  not checked: as r1"

@@ -42,7 +42,7 @@ MADE = {
     for each in (
         Made(
             "C", "c", "r1_monitor.c", ("r1_monitor.c", "r1_monitor.h", "r1_monitor.so"), C_FLAGS,
-            ("rail->oldest_1 >= 2", "rail->oldest_1 >= 1"),
+            ("approximation->oldest_1 >= 2", "approximation->oldest_1 >= 1"),
             ("    fretc_reading *reading;", "abort();"),
             "a monitor in C is compiled for its proof, but none of `gcc`, `clang`, `cc` is "
             "installed",
@@ -55,8 +55,8 @@ MADE = {
         ),
         Made(
             "JavaScript", "js", "r1_monitor.mjs", ("r1_monitor.mjs",), NODE_FLAGS,
-            ("rail.oldest_1 >= 2", "rail.oldest_1 >= 1"),
-            ("  rail.signals = [", "\nabort();"),
+            ("approximation.oldest_1 >= 2", "approximation.oldest_1 >= 1"),
+            ("  approximation.signals = [", "\nabort();"),
             "a monitor in JavaScript is run for its proof, but `node` is not installed",
         ),
     )

@@ -30,9 +30,9 @@ BETTER = (
 )
 
 
-def standings(covered: Coverage) -> dict[tuple[str, str], CoverageStatus]:
+def statuses(covered: Coverage) -> dict[tuple[str, str], CoverageStatus]:
     return {
-        (one.id, each.key): each.standing for one in covered.requirements for each in one.situations
+        (one.id, each.key): each.status for one in covered.requirements for each in one.situations
     }
 
 
@@ -42,15 +42,15 @@ def of(shown: list[Shown]) -> EvidenceFile:
 
 @given(st.lists(SHOWN, min_size=1, max_size=4), SHOWN)
 def test_one_more_run_takes_nothing_away(shown: list[Shown], more: Shown) -> None:
-    before, after = standings(coverage(of(shown))), standings(coverage(of([*shown, more])))
+    before, after = statuses(coverage(of(shown))), statuses(coverage(of([*shown, more])))
     assert before.keys() == after.keys()
-    for key, standing in before.items():
-        assert BETTER.index(after[key]) >= BETTER.index(standing)
+    for key, status in before.items():
+        assert BETTER.index(after[key]) >= BETTER.index(status)
 
 
 @given(st.lists(SHOWN, min_size=1, max_size=5))
-def test_a_standing_is_what_the_best_run_shows(shown: list[Shown]) -> None:
-    found = standings(coverage(of(shown)))
+def test_a_status_is_what_the_best_run_shows(shown: list[Shown]) -> None:
+    found = statuses(coverage(of(shown)))
     for key in KEYS:
         ticks = [each[key] for each in shown if each is not None and key in each]
         if any(tick >= 0 for tick in ticks):
@@ -68,9 +68,9 @@ def test_the_least_runs_show_all_that_is_seen(shown: list[Shown]) -> None:
     covered = coverage(of(shown))
     some = of([shown[place] for place in covered.least.runs] or [{}])
     assert all(
-        (standings(coverage(some))["R1", key] is CoverageStatus.SEEN)
-        is (standing is CoverageStatus.SEEN)
-        for (_, key), standing in standings(covered).items()
+        (statuses(coverage(some))["R1", key] is CoverageStatus.SEEN)
+        is (status is CoverageStatus.SEEN)
+        for (_, key), status in statuses(covered).items()
     )
 
 
@@ -99,7 +99,7 @@ def test_evidence_of_earlier_versions_has_measured_nothing() -> None:
 
 def test_what_only_results_name_is_no_situation() -> None:
     covered = coverage(evidence(of_run("a.mcap", {"invented": 3})))
-    assert set(standings(covered).values()) == {CoverageStatus.NEVER}
+    assert set(statuses(covered).values()) == {CoverageStatus.NEVER}
 
 
 def test_two_logs_of_one_name_are_two_runs() -> None:

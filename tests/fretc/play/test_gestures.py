@@ -98,7 +98,7 @@ class Model:
             for row in zip(*self.rows, strict=True):
                 values = dict(zip(("near", "stopped"), row, strict=True))
                 machine.advance([tuple(values[name] for name in machine.PROPOSITIONS)])
-                ends.append(str(machine.standings()[0].verdict))
+                ends.append(str(machine.statuses()[0].verdict))
         return found
 
 

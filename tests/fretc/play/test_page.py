@@ -291,7 +291,7 @@ def test_both_versions_stand_side_by_side(opened: Open) -> None:
     for row in rows:
         for machine in machines:
             machine.advance([tuple(row[name] for name in machine.PROPOSITIONS)])
-        one, other = ((m.verdicts(), m.standings()[0].finite) for m in machines)
+        one, other = ((m.verdicts(), m.statuses()[0].finite) for m in machines)
         expected.append(one != other)
     assert True in expected[:-1]
     assert False in expected

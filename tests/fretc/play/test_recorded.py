@@ -41,7 +41,7 @@ def signals(machine: Monitor, rows: list[dict[str, Any]]) -> list[tuple[Any, ...
     found = []
     for row in rows:
         machine.advance([row])
-        found.append((*machine.must.signals(), *machine.may.signals()))
+        found.append((*machine.certain.signals(), *machine.possible.signals()))
     return found
 
 
@@ -91,7 +91,7 @@ def noise(template: Template, choose: random.Random) -> dict[str, list[bool | No
     return columns
 
 
-def test_a_late_violation_of_a_standing_demand_has_a_short_window() -> None:
+def test_a_late_violation_of_a_pending_demand_has_a_short_window() -> None:
     values: list[bool | None] = [True] * 9_000
     values[8_000:8_003] = [False] * 3
     made = run_of("the robot shall always satisfy q", {"q": values})

@@ -110,7 +110,7 @@ def test_a_proof_about_numbers_says_that_floats_round() -> None:
     for each in (new, old):
         machine: Any = monitor("m.py", text(each))
         machine.take([(0.2,)])
-        finite.append(machine.standings()[0].finite)
+        finite.append(machine.statuses()[0].finite)
     assert finite == [True, False]
     (pair,) = versions(Side([new], {}, None), Side([old], {}, None), SECONDS).pairs
     assert pair.note.endswith("; the proof assumes exact numbers, without the rounding of floats")

@@ -8,11 +8,11 @@ from typing import Any
 from compiler.formalization.record import wording
 from compiler.project.folder import load
 from compiler.project.project import Project
-from fretc.audit.bases import bases
 from fretc.audit.evidence import reader as reading
-from fretc.audit.evidence.basis import BINDINGS as BINDINGS_PART
-from fretc.audit.evidence.basis import KINDS, of_all
 from fretc.audit.evidence.result_summaries import ResultSummaries
+from fretc.audit.evidence.verdict_inputs import BINDINGS as BINDINGS_PART
+from fretc.audit.evidence.verdict_inputs import KINDS, of_all
+from fretc.audit.project_inputs import all_verdict_inputs
 from fretc.report.make import ReportBuild, make
 from fretc.report.model.marks import verdict_mark
 from fretc.report.model.results import ResultRow
@@ -175,7 +175,7 @@ def result(
     `changes` replace fields; those of `hashes` and `health` are put into the present ones.
     """
     assert known.declarations is not None
-    hashes = {"log": LOG, **basis(known, id)}
+    hashes = {"log": LOG, **verdict_inputs(known, id)}
     health = {
         "intact": True,
         "size": 1234567,
@@ -221,17 +221,17 @@ def result(
     }
 
 
-def basis(known: Project, name: str) -> Mapping[str, str]:
+def verdict_inputs(known: Project, name: str) -> Mapping[str, str]:
     """What an audit would record of a requirement now."""
     if not _latest or _latest[0] is not known:  # asked once as long as one project is in use
-        _latest[:] = known, bases(known)
+        _latest[:] = known, all_verdict_inputs(known)
     found: Mapping[RequirementEntry, Mapping[str, str]] = _latest[1]
     requirement = next((each for each in known.requirements if each.id == name), None)
     return found[requirement] if requirement is not None else dict.fromkeys(KINDS, "0" * 64)
 
 
 _latest: list[Any] = []
-"""The latest project, and its bases."""
+"""The latest project, and its verdict inputs."""
 
 
 ODOM = {
@@ -258,7 +258,7 @@ SITUATIONS = [
 def evidence(known: Project, *results: Mapping[str, Any]) -> dict[str, Any]:
     """A whole evidence file."""
     bound = {
-        requirement.id: basis(known, requirement.id)[BINDINGS_PART]
+        requirement.id: verdict_inputs(known, requirement.id)[BINDINGS_PART]
         for requirement in known.formalized
     }
     measured = {each["requirement"] for each in results if "situations" in each}

@@ -4,7 +4,7 @@ import re
 from collections.abc import Collection, Iterator
 from dataclasses import asdict, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import pytest
 from hypothesis import HealthCheck, Phase, given, settings
@@ -165,7 +165,7 @@ def test_a_page_reads_those_results_in_full_that_it_shows(
 ) -> None:
     report, details = made
     counted = Counted(opened(audited))
-    chosen = selection(report, replace(details, evidence=counted))
+    chosen = selection(report, replace(details, evidence=cast(EvidenceSource, counted)))
     shown = [view.anchor for each in chosen.by_anchor.values() for view in each.details]
     folded = [view.anchor for each in chosen.by_anchor.values() for view in each.folded]
     rows = {row.place: row.anchor for view in report.requirements for row in view.results}

@@ -14,13 +14,13 @@ from fretc.audit.evidence.result_summaries import ResultSummaries
 from fretc.audit.store.anywhere import read as read_evidence
 from fretc.traceability.chain import ChainItem, chains
 from fretc.traceability.comparison import ReviewDifference, differences
-from fretc.traceability.lock import Lock, accepted, read, standings, text
+from fretc.traceability.lock import Lock, accepted, read, review_statuses, text
 from fretc.traceability.meanings import agree
 from fretc.traceability.texts import as_table
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.command import Fretc, write
 from tests.effort import FULL, pairwise, some
-from tests.fretc.audit.evidence.test_basis import (
+from tests.fretc.audit.evidence.test_verdict_inputs import (
     BINDINGS,
     BY,
     CHANGES,
@@ -197,7 +197,7 @@ def compared(lock: Lock | None = None) -> dict[str, ReviewDifference]:
     assert not isinstance(evidence, Diagnostic)
     base = lock or locked()
     found = differences(
-        standings(chains(project, ResultSummaries.of(evidence)), base), base, project
+        review_statuses(chains(project, ResultSummaries.of(evidence)), base), base, project
     )
     return {each.requirement: each for each in found if each.state != "same"}
 

@@ -179,7 +179,7 @@ def test_nothing_is_judged_while_the_source_is_gone(some: list[Sent], data: st.D
     assert ended.verdicts == {each.requirement: each.verdict for each in found}
 
 
-def test_what_is_owed_does_not_wait_for_the_tick() -> None:
+def test_what_is_pending_does_not_wait_for_the_tick() -> None:
     plan = plan_of(Setting(slow="y < 5", lateness=20))
     session = Session(plan)
     far, near = Sent("/x", 9.0, 0), Sent("/x", 1.0, 34)

@@ -72,7 +72,7 @@ def test_each_change_of_a_requirement_is_news_once(plan: Plan) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("last", ["message", "idle"])
-def test_what_is_owed_is_news_before_the_tick_and_soon(last: str) -> None:
+def test_what_is_pending_is_news_before_the_tick_and_soon(last: str) -> None:
     """The grid ticks every 10 ms and waits for 200: what comes is not judged for long."""
     watch = Watch(plan_of(Setting(slow="y < 5", lateness=200)))
     for arrival in steady(0, 300):

@@ -8,9 +8,9 @@ typedef struct {
     bool is_stopped;
 } r1_literals;
 
-static void r1_clear(r1_rail *rail)
+static void r1_clear(r1_approximation *approximation)
 {
-    rail->since_1 = false;
+    approximation->since_1 = false;
 }
 
 void r1_init(r1_state *state)
@@ -19,19 +19,19 @@ void r1_init(r1_state *state)
     r1_clear(&state->possible);
 }
 
-static inline void r1_advance(r1_rail *rail, const r1_literals *now, r1_outcomes *outcomes, bool possible)
+static inline void r1_advance(r1_approximation *approximation, const r1_literals *now, r1_outcomes *outcomes, bool possible)
 {
     fretc_reading *reading;
     /* !stopped S (too_close & !stopped) */
-    rail->since_1 = (now->is_too_close & now->not_stopped) | (now->not_stopped & rail->since_1);
+    approximation->since_1 = (now->is_too_close & now->not_stopped) | (now->not_stopped & approximation->since_1);
     /* R1 */
     reading = possible ? &outcomes->r1.possible : &outcomes->r1.certain;
     reading->left = -1;
     reading->violated = false;
-    reading->failed = rail->since_1;
+    reading->failed = approximation->since_1;
     reading->trigger = now->is_too_close;
     reading->violation = false;
-    reading->open = rail->since_1;
+    reading->open = approximation->since_1;
     reading->satisfied_forever = false;
     reading->answer = now->is_stopped;
 }

@@ -63,11 +63,11 @@ typedef struct {
 /* The certain or the possible values. */
 typedef struct {
     bool since_1; /* !stopped S (too_close & !stopped) */
-} r1_rail;
+} r1_approximation;
 
 typedef struct {
-    r1_rail certain;
-    r1_rail possible;
+    r1_approximation certain;
+    r1_approximation possible;
 } r1_state;
 
 typedef struct {

@@ -300,14 +300,14 @@ function Said(s: Interceptor, h: seq<Heard>, k: int): Published
   InterceptorStep(Hear(s, h, k), h[k]).published
 }
 
-lemma {:induction false} HeldIsOwed(s: Interceptor, h: seq<Heard>, k: int)
+lemma {:induction false} HoldIsPending(s: Interceptor, h: seq<Heard>, k: int)
   requires InRange(s) && 0 <= k <= |h|
   ensures InRange(Hear(s, h, k))
   ensures Hear(s, h, k).held >= s.held - Rings(h, k)
   decreases k
 {
   if k > 0 {
-    HeldIsOwed(s, h, k - 1);
+    HoldIsPending(s, h, k - 1);
     StaysInRange(Hear(s, h, k - 1), h[k - 1]);
   }
 }
@@ -321,7 +321,7 @@ lemma {:induction false} HoldLasts(s: Interceptor, h: seq<Heard>, k: int)
 {
   var requested := InterceptorStep(s, StopHeard(true)).state;
   StaysInRange(s, StopHeard(true));
-  HeldIsOwed(requested, h, k);
+  HoldIsPending(requested, h, k);
 }
 
 lemma {:induction false} StopGrowsOld(s: Interceptor, h: seq<Heard>, k: int)

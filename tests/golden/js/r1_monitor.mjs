@@ -20,10 +20,10 @@ const VARIABLES = [
   { name: "stopped", kind: "truth" },
 ];
 
-/** The state of the certain values, or with `doubt` of the possible values, before the first tick. */
-function rail(doubt) {
+/** The state of the certain values, or with `isPossible` of the possible values, before the first tick. */
+function approximation(isPossible) {
   return {
-    doubt,
+    isPossible,
     // !stopped S (too_close & !stopped)
     since_1: false,
     signals: [],
@@ -32,25 +32,25 @@ function rail(doubt) {
 }
 
 /** A tick of the certain or of the possible values. */
-function advance(rail, tick, truths) {
-  const is_too_close = truths[0] === null ? rail.doubt : truths[0];
-  const not_stopped = truths[1] === null ? rail.doubt : !truths[1];
-  const is_stopped = truths[1] === null ? rail.doubt : truths[1];
+function advance(approximation, tick, truths) {
+  const is_too_close = truths[0] === null ? approximation.isPossible : truths[0];
+  const not_stopped = truths[1] === null ? approximation.isPossible : !truths[1];
+  const is_stopped = truths[1] === null ? approximation.isPossible : truths[1];
   // !stopped S (too_close & !stopped)
-  rail.since_1 = is_too_close && not_stopped || not_stopped && rail.since_1;
-  rail.signals = [
+  approximation.since_1 = is_too_close && not_stopped || not_stopped && approximation.since_1;
+  approximation.signals = [
     // R1
     {
       trigger: is_too_close,
       violation: false,
       violationInevitable: false,
-      obligationPending: rail.since_1,
-      violatedIfEnded: rail.since_1,
+      obligationPending: approximation.since_1,
+      violatedIfEnded: approximation.since_1,
       satisfiedForever: false,
       answer: is_stopped,
     },
   ];
-  mark(rail.marks[0], tick, rail.signals[0], false);
+  mark(approximation.marks[0], tick, approximation.signals[0], false);
 }
 
 /** The truth of PROPOSITIONS at a tick: they are the variables. */
@@ -65,24 +65,24 @@ function truth(certain, possible) {
   return certain === possible ? certain : null;
 }
 
-/** Whether `witness` held lo to hi ticks ago, and `guard` ever since; the window keeps runs of `witness`. */
+/** Whether `witness` held lo to hi ticks ago, and `guard` ever since; the window keeps intervals of `witness`. */
 function slide(window, tick, lo, hi, guard, witness) {
   if (!guard) {
-    window.runs = [];
+    window.intervals = [];
     window.first = 0;
   }
-  const { runs } = window;
+  const { intervals } = window;
   if (witness) {
-    const youngest = runs.at(-1);
+    const youngest = intervals.at(-1);
     if (youngest !== undefined && youngest[1] === tick - 1) youngest[1] = tick;
-    else runs.push([tick, tick]);
+    else intervals.push([tick, tick]);
   }
-  while (window.first < runs.length && runs[window.first][1] < tick - hi) window.first += 1;
-  if (window.first > 64 && 2 * window.first > runs.length) {
-    runs.splice(0, window.first);
+  while (window.first < intervals.length && intervals[window.first][1] < tick - hi) window.first += 1;
+  if (window.first > 64 && 2 * window.first > intervals.length) {
+    intervals.splice(0, window.first);
     window.first = 0;
   }
-  return window.first < runs.length && runs[window.first][0] <= tick - lo;
+  return window.first < intervals.length && intervals[window.first][0] <= tick - lo;
 }
 
 /** The remembered ticks of a requirement; -1: none. */
@@ -157,7 +157,7 @@ function truthValue(value, name) {
 
 /** A monitor before its first tick: plain values, of which `structuredClone` makes a copy. */
 function init() {
-  return { tick: -1, certain: rail(false), possible: rail(true), kept: null };
+  return { tick: -1, certain: approximation(false), possible: approximation(true), kept: null };
 }
 
 /** One tick, by the truth of PROPOSITIONS; an outcome for each requirement. */

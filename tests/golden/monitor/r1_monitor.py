@@ -47,11 +47,11 @@ from typing import (
 # The requirements -----------------------------------------------------------------------------
 
 
-class R1Rail:
-    """The certain values, or with `doubt` the possible values, tick by tick."""
+class R1Approximation:
+    """The certain values, or with `is_possible` the possible values, tick by tick."""
 
     __slots__ = (
-        "doubt",
+        "is_possible",
         "r1_broken",
         "r1_last",
         "r1_open",
@@ -64,8 +64,8 @@ class R1Rail:
         "since_1",
     )
 
-    def __init__(self, doubt: bool = False) -> None:
-        self.doubt = doubt
+    def __init__(self, is_possible: bool = False) -> None:
+        self.is_possible = is_possible
         self.tick = -1
         # !stopped S (too_close & !stopped)
         self.since_1 = False
@@ -79,7 +79,7 @@ class R1Rail:
     def advance(self, rows: "Iterable[Sequence[Any]]") -> bool:
         """Step every row; returns whether all values were known."""
         known = True
-        doubt = self.doubt
+        is_possible = self.is_possible
         tick = self.tick
         since_1 = self.since_1
         r1_last = self.r1_last
@@ -89,14 +89,14 @@ class R1Rail:
             if too_close is not True and too_close is not False:
                 if too_close is None:
                     known = False
-                    too_close = doubt
+                    too_close = is_possible
                 else:
                     too_close = boolean(too_close, "too_close")
             not_stopped = not stopped
             if stopped is not True and stopped is not False:
                 if stopped is None:
                     known = False
-                    stopped = not_stopped = doubt
+                    stopped = not_stopped = is_possible
                 else:
                     stopped = boolean(stopped, "stopped")
             # !stopped S (too_close & !stopped)
@@ -151,35 +151,35 @@ class R1Monitor(Monitor):
         ("not_stopped", "stopped", False),
         ("stopped", "stopped", True),
     )
-    RAIL = R1Rail
-    must: R1Rail
-    may: R1Rail
+    APPROXIMATION = R1Approximation
+    certain: R1Approximation
+    possible: R1Approximation
 
     def step(self, *, too_close: Truth, stopped: Truth) -> Verdict:
         """One tick; None stands for unknown. Equals `advance` for one row if all is known."""
-        rail = self.must
+        approximation = self.certain
         if (
-            rail is not self.may
+            approximation is not self.possible
             or (too_close is not True and too_close is not False)
             or (stopped is not True and stopped is not False)
         ):
             self._step((too_close, stopped))
             return self.verdicts()[0]
-        rail.tick = tick = rail.tick + 1
-        since_1 = rail.since_1
+        approximation.tick = tick = approximation.tick + 1
+        since_1 = approximation.since_1
         not_stopped = not stopped
         # !stopped S (too_close & !stopped)
         since_1 = too_close and not_stopped or not_stopped and since_1
         # R1: trigger, open demand
         if too_close:
-            rail.r1_last = tick
+            approximation.r1_last = tick
         if not since_1:
-            rail.r1_open = -1
-        elif rail.r1_open < 0:
-            rail.r1_open = tick
-        rail.since_1 = since_1
-        rail.r1_signals = (too_close, False, False, since_1, since_1, False, stopped)
-        if rail.r1_broken >= 0:
+            approximation.r1_open = -1
+        elif approximation.r1_open < 0:
+            approximation.r1_open = tick
+        approximation.since_1 = since_1
+        approximation.r1_signals = (too_close, False, False, since_1, since_1, False, stopped)
+        if approximation.r1_broken >= 0:
             return VIOLATED
         return PENDING
 
@@ -190,10 +190,10 @@ class R1Monitor(Monitor):
 
     def verdicts(self) -> "tuple[Verdict, ...]":
         """For each requirement: satisfied or violated for every continuation; else pending."""
-        must = self.must
+        certain = self.certain
         return (
             VIOLATED
-            if must.r1_broken >= 0
+            if certain.r1_broken >= 0
             else PENDING,
         )
 

@@ -39,7 +39,7 @@ EXACT = {
     "whenever p the sw shall for 2 ticks satisfy q": 0,
     "whenever p the sw shall at the next timepoint satisfy q": 0,
 }
-"""Sentences for which the rails are exact: each proposition comes once in what a demand needs.
+"""Sentences whose approximations are exact: each proposition comes once in what a demand needs.
 
 With the least number of uncertain triggers that the test must meet to be worth anything: 0 where a
 demand waits for no answer, so that nothing can be uncertain.
@@ -198,26 +198,33 @@ def outcome_of(
 
 
 def naive(
-    must: Signals[list[bool]], may: Signals[list[bool]], deadline_ticks: int | None, end: Verdict
+    certain: Signals[list[bool]],
+    possible: Signals[list[bool]],
+    deadline_ticks: int | None,
+    end: Verdict,
 ) -> Outcome:
     """The outcome tick by tick, from what its fields mean."""
-    ticks = len(must.trigger)
-    violated = [a or b for a, b in zip(must.violation, must.violation_inevitable, strict=True)]
-    perhaps = [a or b for a, b in zip(may.violation, may.violation_inevitable, strict=True)]
-    verdict = naive_verdict(must, may, violated, perhaps)
+    ticks = len(certain.trigger)
+    violated = [
+        a or b for a, b in zip(certain.violation, certain.violation_inevitable, strict=True)
+    ]
+    perhaps = [
+        a or b for a, b in zip(possible.violation, possible.violation_inevitable, strict=True)
+    ]
+    verdict = naive_verdict(certain, possible, violated, perhaps)
     finite = None
-    if ticks and (any(must.violation) or must.violated_if_ended[-1]):
+    if ticks and (any(certain.violation) or certain.violated_if_ended[-1]):
         finite = False
-    elif ticks and not any(may.violation) and not may.violated_if_ended[-1]:
+    elif ticks and not any(possible.violation) and not possible.violated_if_ended[-1]:
         finite = True
     unknown = [a != b for a, b in zip(violated, perhaps, strict=True)]
     if end == VIOLATED and verdict == "inconclusive":
         verdict, violated[-1] = VIOLATED, True
-    triggers = tuple(tick for tick in range(ticks) if must.trigger[tick])
+    triggers = tuple(tick for tick in range(ticks) if certain.trigger[tick])
     answers, still_open, uncertain = [], [], []
     for trigger in triggers:
         at = trigger
-        while at < ticks and may.obligation_pending[at] and not must.answer[at]:
+        while at < ticks and possible.obligation_pending[at] and not certain.answer[at]:
             at += 1
         late = (
             deadline_ticks is not None and (ticks if at == ticks else at) - trigger > deadline_ticks
@@ -226,11 +233,11 @@ def naive(
             still_open.append(
                 (trigger, None if deadline_ticks is None else trigger + deadline_ticks)
             )
-        elif at < ticks and must.answer[at] and not late:
+        elif at < ticks and certain.answer[at] and not late:
             answers.append((trigger, at))
         else:
             continue
-        if any(not must.obligation_pending[k] or may.answer[k] for k in range(trigger, at)):
+        if any(not certain.obligation_pending[k] or possible.answer[k] for k in range(trigger, at)):
             uncertain.append(trigger)
     return Outcome(
         "R1",
@@ -248,19 +255,19 @@ def naive(
 
 
 def naive_verdict(
-    must: Signals[list[bool]],
-    may: Signals[list[bool]],
+    certain: Signals[list[bool]],
+    possible: Signals[list[bool]],
     violated: Sequence[bool],
     perhaps: Sequence[bool],
 ) -> Verdict:
     if not violated:
         return NO_DATA
-    for sure, possible, verdict in (
+    for sure, maybe, verdict in (
         (any(violated), any(perhaps), VIOLATED),
-        (must.obligation_pending[-1], may.obligation_pending[-1], INCONCLUSIVE),
-        (any(must.trigger), any(may.trigger), SATISFIED),
+        (certain.obligation_pending[-1], possible.obligation_pending[-1], INCONCLUSIVE),
+        (any(certain.trigger), any(possible.trigger), SATISFIED),
     ):
-        if possible:
+        if maybe:
             return verdict if sure else NO_DATA
     return VACUOUS
 
@@ -279,12 +286,12 @@ def hold_to_the_definition(
     codes: Mapping[str, bytes], ticks: int, deadline_ticks: int | None, end: Verdict
 ) -> Outcome:
     """Whether the outcome of these signals is the naive one; 0 false, 1 true, 2 unknown."""
-    must = Signals(**{name: [code == 1 for code in values] for name, values in codes.items()})
-    may = Signals(**{name: [code != 0 for code in values] for name, values in codes.items()})
+    certain = Signals(**{name: [code == 1 for code in values] for name, values in codes.items()})
+    possible = Signals(**{name: [code != 0 for code in values] for name, values in codes.items()})
     columns = {name: column(values) for name, values in codes.items()}
     found, expected = (
         outcome_of(columns, ticks, deadline_ticks, end),
-        naive(must, may, deadline_ticks, end),
+        naive(certain, possible, deadline_ticks, end),
     )
     assert found == expected
     assert found.as_json() == expected.as_json()

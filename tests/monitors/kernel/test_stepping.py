@@ -43,7 +43,7 @@ def rows(machine: Monitor, count: int, seed: int, unknown: float = 0.1) -> Rows:
 
 
 def outputs(machine: Monitor) -> tuple[object, ...]:
-    return machine.tick, machine.verdicts(), machine.standings(), step(machine), machine.state()
+    return machine.tick, machine.verdicts(), machine.statuses(), step(machine), machine.state()
 
 
 @pytest.mark.slow
@@ -144,7 +144,7 @@ def test_a_step_of_many_propositions_is_that_of_few(count: int) -> None:
         step_of.step(**dict(zip(single.PROPOSITIONS.values(), row, strict=True)))
     whole.advance(table)
     assert outputs(single) == outputs(whole)
-    assert whole.standings()[0].first_violation == 3
+    assert whole.statuses()[0].first_violation == 3
 
 
 @pytest.mark.parametrize("count", [2, *WIDE])
@@ -203,7 +203,7 @@ def test_rows_may_be_given_by_name() -> None:
     table = rows(first, 50, 1)
     first.advance(table)
     second.advance([dict(zip(second.PROPOSITIONS, row, strict=True)) for row in table])
-    assert first.standings() == second.standings()
+    assert first.statuses() == second.statuses()
 
 
 @pytest.mark.parametrize("sentence", [*SENTENCES, "whenever !p sw shall immediately satisfy !q"])
@@ -217,7 +217,7 @@ def test_booleans_of_numpy_are_those_of_python(sentence: str) -> None:
     for row in same:
         stepped.step(**dict(zip(single.PROPOSITIONS.values(), row, strict=True)))
     assert outputs(python) == outputs(numpy) == outputs(single)
-    assert type(numpy.must.signals()[0].trigger) is bool
+    assert type(numpy.certain.signals()[0].trigger) is bool
 
 
 @pytest.mark.slow
@@ -231,7 +231,7 @@ def test_a_bad_value_leaves_the_last_whole_piece(sentence: str, bad: Any, unknow
     with pytest.raises(TypeError, match="is True, False or None"):
         machine.advance(broken)
     assert machine.tick == 4_095
-    assert machine.may.tick == machine.must.tick
+    assert machine.possible.tick == machine.certain.tick
     other.advance(table[:4_096])
     machine.advance(table[4_096:])
     other.advance(table[4_096:])
@@ -243,10 +243,10 @@ def test_rows_that_can_be_read_once_leave_no_half_step() -> None:
     fleeting: Any = (iter(row) for row in [(False, True), (None, False)])
     with pytest.raises((TypeError, ValueError)):
         machine.advance(fleeting)
-    assert machine.must.tick == machine.may.tick == -1
+    assert machine.certain.tick == machine.possible.tick == -1
 
 
-def test_whatever_stops_a_run_both_rails_stay_together() -> None:
+def test_whatever_stops_a_run_both_approximations_stay_together() -> None:
     def source() -> Iterator[tuple[Truth, ...]]:
         yield from [(None, True)] * 4_096
         yield from [(True, True)] * 10
@@ -255,16 +255,16 @@ def test_whatever_stops_a_run_both_rails_stay_together() -> None:
     machine = monitor("whenever p sw shall immediately satisfy q")
     with pytest.raises(KeyboardInterrupt):
         machine.advance(source())
-    assert machine.must.tick == machine.may.tick == 4_095
+    assert machine.certain.tick == machine.possible.tick == 4_095
 
 
-# One rail again -------------------------------------------------------------------------------
+# One approximation again ----------------------------------------------------------------------
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("sentence", [*SENTENCES, *LONG])
 @pytest.mark.parametrize("seed", range(3))
-def test_a_monitor_whose_rails_meet_again_tells_what_one_tells_whose_rails_do_not(
+def test_a_monitor_whose_approximations_meet_again_tells_what_one_tells_whose_approximations_do_not(
     sentence: str, seed: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     choose = random.Random(seed)
@@ -287,33 +287,32 @@ def test_a_monitor_whose_rails_meet_again_tells_what_one_tells_whose_rails_do_no
         ("whenever p sw shall eventually satisfy q", (True, True)),
     ],
 )
-def test_rails_meet_again_soon_after_all_is_known(
+def test_approximations_meet_again_soon_after_all_is_known(
     sentence: str, last: tuple[bool, bool], batch: int
 ) -> None:
     machine = monitor(sentence)
     machine.advance([(True, None)])
-    assert machine.may is not machine.must
+    assert machine.possible is not machine.certain
     for _ in range(400 // batch + 2):
         machine.advance([last] * batch)
-    assert machine.may is machine.must
+    assert machine.possible is machine.certain
 
 
-def test_rails_stay_two_where_a_violation_is_possible() -> None:
+def test_approximations_stay_two_where_a_violation_is_possible() -> None:
     machine = monitor("whenever p sw shall immediately satisfy q")
     machine.advance([(True, None), *[(False, True)] * 9_000])
-    assert machine.may is not machine.must
-    assert machine.standings()[0].finite is None
+    assert machine.possible is not machine.certain
+    assert machine.statuses()[0].finite is None
 
 
-def test_nothing_is_known_to_be_owed_before_the_first_tick() -> None:
+def test_nothing_is_known_to_be_pending_before_the_first_tick() -> None:
     assert (
-        monitor("whenever p sw shall eventually satisfy q").standings()[0].obligation_pending
-        is None
+        monitor("whenever p sw shall eventually satisfy q").statuses()[0].obligation_pending is None
     )
 
 
 @pytest.mark.parametrize("sentence", SENTENCES[:4])
-def test_what_is_owed_holds_whatever_the_unknown_values_are(sentence: str) -> None:
+def test_what_is_pending_holds_whatever_the_unknown_values_are(sentence: str) -> None:
     """A definite answer is that of each completion; unknown values leave some of them open."""
     machine, known = monitor(sentence), monitor(sentence)
     seen = set()
@@ -321,41 +320,43 @@ def test_what_is_owed_holds_whatever_the_unknown_values_are(sentence: str) -> No
         table = rows(machine, 5, seed, 0.2)
         machine.reset()
         machine.advance(table)
-        obligation_pending = machine.standings()[0].obligation_pending
+        obligation_pending = machine.statuses()[0].obligation_pending
         choices = [(True, False) if value is None else (value,) for row in table for value in row]
         for values in itertools.islice(itertools.product(*choices), 128):
             known.reset()
             known.advance(zip(*[iter(values)] * len(table[0]), strict=True))
-            assert obligation_pending in (None, known.standings()[0].obligation_pending)
+            assert obligation_pending in (None, known.statuses()[0].obligation_pending)
         seen.add(obligation_pending)
     assert seen == {True, False, None}
 
 
 @pytest.mark.parametrize("after", [100, 500])
-def test_rails_stay_two_as_long_as_their_windows_differ(after: int) -> None:
+def test_approximations_stay_two_as_long_as_their_windows_differ(after: int) -> None:
     """All else agrees; that `q` may have held shows where `p` fails 300 to 1 000 ticks later."""
     machine = monitor("sw shall always satisfy (p | occurred(300, 1000, q))")
     machine.advance([(True, None)])
     for _ in range(after):
         machine.advance([(True, False)])
     machine.advance([(False, False)])
-    assert machine.standings()[0].finite is (None if after == 500 else False)
+    assert machine.statuses()[0].finite is (None if after == 500 else False)
     machine.reset()
     machine.advance([(True, None)])
     for _ in range(2_100):
         machine.advance([(True, False)])
-    assert machine.may is machine.must
+    assert machine.possible is machine.certain
 
 
-def test_rails_part_no_more_often_than_every_64_ticks(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A copy of a rail costs more than some steps of a second one."""
+def test_approximations_part_no_more_often_than_every_64_ticks(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A copy of an approximation costs more than some steps of a second one."""
     machine: Any = monitor("whenever p sw shall within 3 ticks satisfy q")
     parted: list[int] = []
     part = machine._part
 
-    def noted(may: object) -> None:
+    def noted(possible: object) -> None:
         parted.append(machine.tick)
-        part(may)
+        part(possible)
 
     monkeypatch.setattr(machine, "_part", noted)
     for tick in range(1_000):
@@ -424,9 +425,16 @@ def test_a_state_that_was_changed_is_refused() -> None:
     machine = monitor(WINDOW, SENTENCES[0])
     machine.advance(rows(machine, 30, 4, 0.3))
     state, before = machine.state(), outputs(machine)
-    names = [(rail, name) for rail in ("must", "may") for name in state[rail]]
+    names = [
+        (approximation, name)
+        for approximation in ("certain", "possible")
+        for name in state[approximation]
+    ]
     wrong: list[Any] = [changed(state, *path, value=-999) for path in names]
-    wrong += [changed(state, "may", value=None), changed(state, "must", "doubt", value=True)]
+    wrong += [
+        changed(state, "possible", value=None),
+        changed(state, "certain", "is_possible", value=True),
+    ]
     wrong += [{**state, "more": 1}, {**state, "sha256": ""}, {}, [], None, "x", {"program": 3}]
     for other in wrong:
         with pytest.raises(ValueError, match="state"):
@@ -455,14 +463,16 @@ def test_each_requirement_is_told_as_if_it_were_alone() -> None:
         for single in alone:
             single.advance([{name: named[name] for name in single.PROPOSITIONS}])
         assert together.verdicts() == tuple(single.verdicts()[0] for single in alone)
-        for found, single in zip(together.standings(), alone, strict=True):
-            assert found[1:] == single.standings()[0][1:]
+        for found, single in zip(together.statuses(), alone, strict=True):
+            assert found[1:] == single.statuses()[0][1:]
 
 
 def test_a_requirement_takes_five_slots_beside_its_cells() -> None:
     """Beyond 8 191 slots of a class, CPython 3.11 looks each up by its name: a thousand fit."""
-    rail = monitor(*SENTENCES).RAIL
-    assert len(rail.__slots__) == len(("doubt", "tick")) + len(rail.CELLS) + 5 * len(SENTENCES)
+    approximation = monitor(*SENTENCES).APPROXIMATION
+    assert len(approximation.__slots__) == len(("is_possible", "tick")) + len(
+        approximation.CELLS
+    ) + 5 * len(SENTENCES)
 
 
 @pytest.mark.parametrize("count", [1, 2])
@@ -493,9 +503,9 @@ def test_a_look_ahead_says_what_would_be_and_changes_nothing(sentence: str) -> N
         copy.restore(before)
         copy.advance(rows(machine, 4, 100 + seed))
         more = rows(machine, 4, 100 + seed)
-        assert machine.standings_after(more) == copy.standings()
+        assert machine.statuses_after(more) == copy.statuses()
         assert machine.obligation_pending_after(more) == tuple(
-            each.obligation_pending for each in copy.standings()
+            each.obligation_pending for each in copy.statuses()
         )
         assert machine.state() == before
         machine.advance(block)
@@ -508,9 +518,9 @@ def test_a_look_ahead_that_fails_changes_nothing() -> None:
     machine.advance(rows(machine, 5, 1))
     before = machine.state()
     with pytest.raises(TypeError):
-        machine.standings_after([("no truth", True)])  # type: ignore[list-item]
+        machine.statuses_after([("no truth", True)])  # type: ignore[list-item]
     assert machine.state() == before
-    assert machine.standings_after([]) == machine.standings()
+    assert machine.statuses_after([]) == machine.statuses()
     assert monitor(SENTENCES[0]).obligation_pending_after([]) == (None,)
 
 
@@ -518,7 +528,12 @@ def test_the_former_names_give_the_same_values_and_a_warning() -> None:
     machine = monitor("whenever p sw shall eventually satisfy q")
     machine.advance([(True, False)])
     with pytest.warns(DeprecationWarning, match="`owed` is now `obligation_pending`") as told:
-        assert machine.standings()[0].owed is True
+        assert machine.statuses()[0].owed is True
     assert told[0].filename == __file__
+    with pytest.warns(DeprecationWarning, match="`standings` is now `statuses`"):
+        assert machine.standings() == machine.statuses()
+    with pytest.warns(DeprecationWarning, match="is now `statuses_after`"):
+        later = machine.standings_after([(False, True)])
+    assert later == machine.statuses_after([(False, True)]) != machine.statuses()
     with pytest.warns(DeprecationWarning, match="is now `obligation_pending_after`"):
         assert machine.owed_after([(False, True)]) == (False,)

@@ -44,8 +44,10 @@ def test_frets_finite_verdict_is_false_as_soon_as_one_reason_is_certain() -> Non
         assert finite_verdict(*known) == (verdicts.pop() if len(verdicts) == 1 else None), known
 
 
-def test_both_rails_make_one_truth_value() -> None:
-    assert [truth(*rails) for rails in ((False, False), (True, True), (False, True))] == [
+def test_both_approximations_make_one_truth_value() -> None:
+    assert [
+        truth(*approximations) for approximations in ((False, False), (True, True), (False, True))
+    ] == [
         False,
         True,
         None,

@@ -58,25 +58,25 @@ def rows(choose: random.Random, width: int, length: int) -> Rows:
     return found
 
 
-def columns(machine: Monitor, trace: Rows, doubt: bool) -> tuple[Signals[int], ...]:
-    """The signals of the monitor's columns on one rail."""
+def columns(machine: Monitor, trace: Rows, is_possible: bool) -> tuple[Signals[int], ...]:
+    """The signals of the monitor's columns on one approximation."""
     every = (1 << len(trace)) - 1
     _, made = columns_of(pieces_of(trace), len(machine.PROPOSITIONS))
     named = dict(zip(machine.PROPOSITIONS, made, strict=True))
-    return machine.columns(every, **literals_of(machine, named, every, doubt))
+    return machine.columns(every, **literals_of(machine, named, every, is_possible))
 
 
 def hold(machine: Monitor, program: Program, *traces: Rows, place: int = 0) -> None:
     """C, the steps of Python and its columns tell the same at each tick of all traces."""
     _, found = program.run(*((place, trace) for trace in traces))
     for trace, outcomes in zip(traces, found, strict=True):
-        certain, possible = (columns(machine, trace, doubt) for doubt in (False, True))
+        certain, possible = (columns(machine, trace, is_possible) for is_possible in (False, True))
         for tick, (expected, told) in enumerate(
             zip(of_python(machine, trace), outcomes, strict=True)
         ):
             assert told == expected, (tick, trace)
-            for one, must, may in zip(told, certain, possible, strict=True):
-                for reading, signals in ((one.certain, must), (one.possible, may)):
+            for one, low, high in zip(told, certain, possible, strict=True):
+                for reading, signals in ((one.certain, low), (one.possible, high)):
                     for name, signal in SIGNALS.items():
                         column = getattr(signals, signal)
                         assert getattr(reading, name) is bool(column >> tick & 1), (name, tick)
@@ -192,8 +192,8 @@ def test_monitors_in_files_of_their_own_tell_the_same(cc: str, tmp_path: Path) -
 
 
 CLASHES = (
-    "class", "now", "rail", "state", "since_1", "is_p", "not_p", "INT32_MAX", "true_", "linux",
-    "near", "C1_MONITOR_H", "UINT32_C", "c1_step", "c1_inputs", "x > 3", "x_gt_3", "a*/b",
+    "class", "now", "approximation", "state", "since_1", "is_p", "not_p", "INT32_MAX", "true_",
+    "linux", "near", "C1_MONITOR_H", "UINT32_C", "c1_step", "c1_inputs", "x > 3", "x_gt_3", "a*/b",
     "reading", "_A", "__cplusplus", "p??/", "certain", "uint8_t", "fretc_truth", "FRETC_TRUE",
     "errno", "_Bool",
 )  # fmt: skip

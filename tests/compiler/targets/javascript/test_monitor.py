@@ -16,7 +16,7 @@ from compiler.logic import formula as f
 from compiler.targets.javascript import monitor as target
 from compiler.targets.python.monitor import text as in_python
 from monitors.kernel import Monitor
-from monitors.kernel.stepping import Standing
+from monitors.kernel.stepping import RequirementStatus
 from monitors.kernel.verdicts import Signals, Truth, truth
 from monitors.loading import load
 from tests.compiler.targets.c.test_c_monitor import in_files
@@ -65,29 +65,29 @@ def told_by_python(machine: Monitor, word: Word) -> Iterator[list[dict[str, Any]
         machine.advance([tuple(row)])
         parts = (
             machine.verdicts(),
-            machine.standings(),
-            machine.must.signals(),
-            machine.may.signals(),
+            machine.statuses(),
+            machine.certain.signals(),
+            machine.possible.signals(),
         )
         yield [expected(*each) for each in zip(*parts, strict=True)]
 
 
 def expected(
-    verdict: str, standing: Standing, must: Signals[bool], may: Signals[bool]
+    verdict: str, status: RequirementStatus, certain: Signals[bool], possible: Signals[bool]
 ) -> dict[str, Any]:
-    both = {name: truth(*pair) for name, *pair in zip(SIGNALS, must, may, strict=True)}
+    both = {name: truth(*pair) for name, *pair in zip(SIGNALS, certain, possible, strict=True)}
     return {
         "verdict": verdict,
-        "atEnd": standing.verdict,
-        "finite": standing.finite,
+        "atEnd": status.verdict,
+        "finite": status.finite,
         "trigger": both["trigger"],
         "violation": both["violation"],
-        "obligationPending": standing.obligation_pending,
-        "firstViolation": standing.first_violation,
-        "open": standing.open,
-        "deadline": standing.deadline,
-        "certain": {SIGNALS[name]: value for name, value in must._asdict().items()},
-        "possible": {SIGNALS[name]: value for name, value in may._asdict().items()},
+        "obligationPending": status.obligation_pending,
+        "firstViolation": status.first_violation,
+        "open": status.open,
+        "deadline": status.deadline,
+        "certain": {SIGNALS[name]: value for name, value in certain._asdict().items()},
+        "possible": {SIGNALS[name]: value for name, value in possible._asdict().items()},
     }
 
 
@@ -116,12 +116,12 @@ def alike(
 
 
 def reduced(outcome: Mapping[str, Any]) -> dict[str, Any]:
-    """Without the marks of the rails, of which Python tells some only."""
-    rails = {
-        rail: {name: outcome[rail][name] for name in SIGNALS.values()}
-        for rail in ("certain", "possible")
+    """Without the marks of the approximations, of which Python tells some only."""
+    approximations = {
+        approximation: {name: outcome[approximation][name] for name in SIGNALS.values()}
+        for approximation in ("certain", "possible")
     }
-    return {**outcome, **rails}
+    return {**outcome, **approximations}
 
 
 @pytest.mark.slow
@@ -165,7 +165,18 @@ def test_every_bound_of_a_window(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_no_name_clashes_with_another(tmp_path: Path) -> None:
-    names = ("tick", "rail", "truths", "mark", "first", "class", "await", "is_p", "p", "not_p")
+    names = (
+        "tick",
+        "approximation",
+        "truths",
+        "mark",
+        "first",
+        "class",
+        "await",
+        "is_p",
+        "p",
+        "not_p",
+    )
     odd = ("a.b", "two words", "__proto__", "constructor", "a</script>b", "a\u2028b", "since_1")
     quoted = [f'"{name}"' for name in (*names, *odd)]
     wanted = [f"whenever {p} the sw shall within 1 ticks satisfy {q}" for p, q in pairs(quoted)]

@@ -213,6 +213,6 @@ def test_words_and_ticks_before_are_the_same(tmp_path: Path) -> None:
         ((*told,),) = outcomes(folder, [text(requirement)], [(0, word)])
         for row, (outcome,) in zip(word, told, strict=True):
             machine.take([row])
-            (standing,) = machine.standings()
+            (status,) = machine.statuses()
             assert outcome["verdict"] == machine.verdicts()[0]
-            assert (outcome["atEnd"], outcome["finite"]) == (standing.verdict, standing.finite)
+            assert (outcome["atEnd"], outcome["finite"]) == (status.verdict, status.finite)

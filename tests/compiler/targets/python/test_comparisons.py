@@ -280,7 +280,7 @@ def test_a_monitor_is_stepped_by_numbers() -> None:
     machine.reset()
     assert step(machine, battery=math.nan, docking=False) == "pending"
     assert step(machine, battery=None, docking=False) == "pending"
-    assert machine.standings()[0].verdict == "no data"
+    assert machine.statuses()[0].verdict == "no data"
 
 
 def test_rows_of_a_run_are_variables_in_their_order_or_by_name() -> None:

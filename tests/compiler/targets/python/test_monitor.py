@@ -365,7 +365,7 @@ def test_an_open_demand_may_count_as_violated_at_the_end() -> None:
 
 
 def generated(text: str) -> list[ast.ClassDef]:
-    """The rail and the monitor, which are not copied from the kernel."""
+    """The approximation and the monitor, which are not copied from the kernel."""
     after = text[text.index("# The requirements ---") :]
     return [node for node in ast.parse(after).body if isinstance(node, ast.ClassDef)]
 
@@ -409,7 +409,7 @@ def test_a_monitor_with_a_long_duration_steps_to_its_deadline() -> None:
         ("p_may", "p"),
         ("p_must", "p_may"),
         ("p", "p_"),
-        ("rails", "truth"),
+        ("approximations", "truth"),
         ("Truth", "Verdict"),
         ("History", "Window"),
         ("deque", "sys"),

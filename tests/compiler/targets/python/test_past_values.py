@@ -69,7 +69,7 @@ def test_a_step_compares_as_a_tick_of_an_audit(
     for value, expected in zip(samples.values, audited, strict=True):
         stepped.step(x=None if np.isnan(value) else value)
         broken = broken or expected is False
-        (standing,) = stepped.standings()
-        assert (standing.verdict == "violated") is broken
+        (status,) = stepped.statuses()
+        assert (status.verdict == "violated") is broken
     known = None not in audited
-    assert known or broken or standing.verdict == "no data"
+    assert known or broken or status.verdict == "no data"

@@ -113,7 +113,9 @@ def test_every_tick_is_that_of_the_audit(setting: Setting, some: list[Sent], idl
 @pytest.mark.slow
 @examples(12)
 @given(settings_, messages)
-def test_what_is_owed_on_arrival_is_what_a_watch_says(setting: Setting, some: list[Sent]) -> None:
+def test_what_is_pending_on_arrival_is_what_a_watch_says(
+    setting: Setting, some: list[Sent]
+) -> None:
     _, obligation_pending = judging(setting, some, 0)
     session = Session(plan_of(setting))
     for each in sorted(some, key=lambda each: each.arrival.log_time):

@@ -144,7 +144,7 @@ def test_cells_are_all_numbers() -> None:
         found = setting(seed)
         game = found.game(found.arena.counters, ENDLESS)
         assert not found.arena.beyond
-        assert not found.arena.alphabet.doubts
+        assert not found.arena.alphabet.uncertainties
         is_realizable = game.solution().is_realizable
         assert is_realizable is synthesized(*drawn(seed)), drawn(seed)
         if is_realizable:

@@ -117,7 +117,7 @@ def test_without_numbers_it_is_as_the_game_says() -> None:
     assert seen == {True, False}
 
 
-def test_as_fret_nothing_is_owed_at_any_tick() -> None:
+def test_as_fret_nothing_is_pending_at_any_tick() -> None:
     sentences = (RATE.format("0.0", 1), "the sw shall eventually satisfy v > 5")
     assert isinstance(found(*sentences), SatisfyingRun)
     assert isinstance(found(*sentences, as_fret=True), NoShortRun)

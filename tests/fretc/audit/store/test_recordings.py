@@ -1,4 +1,4 @@
-"""Kept samples: what is judged by them is what is judged by the log, and they are nobody else's."""
+"""Kept samples: they give the verdicts of the log, and nobody else's samples are used."""
 
 import shutil
 import struct
@@ -37,7 +37,7 @@ READ_AGAIN = {
     "a path",
     "a topic less",
 }
-"""Changes of what is read of a log; all others are of what it is judged by."""
+"""Changes of what is read of a log; all others are of the requirements."""
 
 
 @pytest.fixture

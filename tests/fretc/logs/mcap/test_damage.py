@@ -138,9 +138,11 @@ def test_what_loses_nothing_and_what_may_lose_anything_stand_by_themselves() -> 
 
 
 @pytest.mark.parametrize(("count", "descriptions"), [(1, []), (2, ["a"])])
-def test_a_doubt_counts_where_a_message_is_missing(count: int, descriptions: list[str]) -> None:
+def test_a_possible_damage_counts_where_a_message_is_missing(
+    count: int, descriptions: list[str]
+) -> None:
     damages = Damages()
-    damages.doubt(1, "a")
+    damages.add_possible(1, "a")
     damages.passed(10)
     summary = no_summary(100)
     summary.statistics = Statistics(0, 1, {7: count}, 0, count, 10, 0, 10, 1)

@@ -184,15 +184,15 @@ def test_a_hazard_has_no_verdict_but_says_what_its_requirements_show(tmp_path: P
     sentence = "the robot shall always satisfy stopped"
     known = project(tmp_path, requirement("R1", sentence), requirement("R2", sentence))
 
-    def standing(*words: str) -> str:
+    def summary(*words: str) -> str:
         results = [result(known, word, f"R{n}") for n, word in enumerate(words, 1)]
         build = report_of(known, tmp_path, *results)
         assert build.report is not None
         (block,) = picture(build.report, (), ALL).blocks
-        return block.standing
+        return block.summary
 
-    assert standing("satisfied", "satisfied") == "all 2 requirements hold in these runs"
-    assert standing("satisfied", "violated") == "1 of 2 requirements is violated"
-    assert standing("violated", "violated") == "2 of 2 requirements are violated"
-    assert standing("vacuous", "violated") == "1 of 2 requirements is violated, 1 is not shown"
-    assert standing("satisfied", "no data") == "1 of 2 requirements is not shown"
+    assert summary("satisfied", "satisfied") == "all 2 requirements hold in these runs"
+    assert summary("satisfied", "violated") == "1 of 2 requirements is violated"
+    assert summary("violated", "violated") == "2 of 2 requirements are violated"
+    assert summary("vacuous", "violated") == "1 of 2 requirements is violated, 1 is not shown"
+    assert summary("satisfied", "no data") == "1 of 2 requirements is not shown"

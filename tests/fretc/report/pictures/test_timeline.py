@@ -136,7 +136,7 @@ def test_latencies_that_fit_no_triggers_belong_to_none() -> None:
 
 def unknown_input(proposition: str, first: int, last: int) -> UnknownInput:
     ends = (first * 10**8, last * 10**8, first / 10, last / 10)
-    return UnknownInput(proposition, first, last, *ends, signal="scan", cause="lost")
+    return UnknownInput(first, last, *ends, proposition=proposition, signal="scan", cause="lost")
 
 
 def test_each_proposition_that_was_unknown_has_a_lane_with_its_stretches() -> None:

@@ -151,7 +151,7 @@ FAULTS = (
     (r"if not ", "if "),
     (r"< 0 and ", "< 0 or "),
 )
-"""What is replaced in the step of a rail, at each place by itself."""
+"""What is replaced in the step of an approximation, at each place by itself."""
 TICKS = 6 if FULL else 4
 
 
@@ -174,8 +174,8 @@ def judgements(text: str) -> list[object]:
         monitor.reset()
         for row in word:
             monitor.advance([row])
-            (standing,) = monitor.standings()
-            found.append((*monitor.verdicts(), standing.finite, standing.first_violation))
+            (status,) = monitor.statuses()
+            found.append((*monitor.verdicts(), status.finite, status.first_violation))
     return found
 
 
@@ -208,7 +208,7 @@ def test_one_file_steps_monitors_in_three_languages(tmp_path: Path) -> None:
 
 
 WRONG = (
-    ("r1_monitor.c", r"rail->oldest_1 >= 3", "rail->oldest_1 >= 2", "in C"),
+    ("r1_monitor.c", r"approximation->oldest_1 >= 3", "approximation->oldest_1 >= 2", "in C"),
     ("r1_monitor.c", r"possible\.failed \? 1u", "possible.failed ? 0u", "in C"),
     ("r1_monitor.c", r"= FRETC_VIOLATED;", "= 7;", "IndexError"),
     ("r1_monitor.c", r"\Z", "\n#error\n", "CalledProcessError"),

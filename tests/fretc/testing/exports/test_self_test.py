@@ -116,10 +116,10 @@ def test_it_gives_the_number_of_the_test_that_fails(tmp_path: Path) -> None:
 
 
 FAULTS = (
-    ("rail->oldest_1 >= 3", "rail->oldest_1 >= 2"),
-    ("rail->oldest_1 >= 3", "rail->oldest_1 >= 4"),
-    ("rail->oldest_1 = 0;", "rail->oldest_1 = 1;"),
-    ("rail->r1_broken | since_1", "rail->r1_broken & since_1"),
+    ("approximation->oldest_1 >= 3", "approximation->oldest_1 >= 2"),
+    ("approximation->oldest_1 >= 3", "approximation->oldest_1 >= 4"),
+    ("approximation->oldest_1 = 0;", "approximation->oldest_1 = 1;"),
+    ("approximation->r1_broken | since_1", "approximation->r1_broken & since_1"),
     ("outcome->verdict = FRETC_PENDING;", "outcome->verdict = FRETC_SATISFIED;"),
     ("(outcome->certain.failed ? 0u : 1u)", "(outcome->certain.failed ? 1u : 0u)"),
     ("now.not_q = inputs->q != FRETC_TRUE;", "now.not_q = inputs->q == FRETC_FALSE;"),

@@ -43,10 +43,14 @@ def test_undefined_behaviour_ends_the_process_and_proves_nothing() -> None:
     one = requirement(WITHIN)
     largest = edited(
         given_c(one),
-        "rail->oldest_1 = -1;\n    rail->r1",
-        "rail->oldest_1 = 2147483647;\n    rail->r1",
+        "approximation->oldest_1 = -1;\n    approximation->r1",
+        "approximation->oldest_1 = 2147483647;\n    approximation->r1",
     )
-    wrong = edited(largest, "(rail->oldest_1 < 4) ? (rail->oldest_1 + 1) : 4", "rail->oldest_1 + 1")
+    wrong = edited(
+        largest,
+        "(approximation->oldest_1 < 4) ? (approximation->oldest_1 + 1) : 4",
+        "approximation->oldest_1 + 1",
+    )
     ((_, outcome, _, _),) = verified([one], wrong, c, CC, LIMITS)
     assert outcome.result is ClaimResult.NOT_CHECKED
     assert "crashed" in outcome.detail
@@ -56,16 +60,16 @@ def test_undefined_behaviour_ends_the_process_and_proves_nothing() -> None:
 def test_an_overflow_that_a_compiler_need_not_see_proves_nothing() -> None:
     """Without it, the text would mean the same."""
     one = requirement(WITHIN)
-    counted = "(rail->oldest_1 < 4) ? (rail->oldest_1 + 1) : 4"
-    twice, harmless = f"{counted} : {counted}", "rail->oldest_1 < 9"
+    counted = "(approximation->oldest_1 < 4) ? (approximation->oldest_1 + 1) : 4"
+    twice, harmless = f"{counted} : {counted}", "approximation->oldest_1 < 9"
     fine = edited(given_c(one), counted, f"({harmless}) ? {twice}")
     ((_, outcome, _, _),) = verified([one], fine, c, CC, LIMITS)
     assert outcome.result is ClaimResult.PROVED, outcome.detail
     for overflow in (
-        "2147483643 + rail->oldest_1 + 1 > 2147483643 + rail->oldest_1",
-        "(2147483643 + rail->oldest_1) - 2147483643 == rail->oldest_1",
-        "2147483643 + rail->oldest_1 > rail->oldest_1",
-        "((rail->oldest_1 < 9) ? (2147483643 + rail->oldest_1) : 4) > 0",
+        "2147483643 + approximation->oldest_1 + 1 > 2147483643 + approximation->oldest_1",
+        "(2147483643 + approximation->oldest_1) - 2147483643 == approximation->oldest_1",
+        "2147483643 + approximation->oldest_1 > approximation->oldest_1",
+        "((approximation->oldest_1 < 9) ? (2147483643 + approximation->oldest_1) : 4) > 0",
         "2147483647 + 1 < 0",
         "0 - 2147483647 - 2 < 0",
     ):

@@ -80,8 +80,8 @@ def test_a_line_of_another_kind_proves_nothing(tongue: Tongue, checker: Checker)
     """A library whose lines are no such lines is compared with all of their bits."""
     one = requirement(RINGED[0], "R1")
     checked, executable = checker.prepared(tongue.given(one), one)
-    rail = library.CompiledDelayed
-    honest = rail.step
+    approximation = library.CompiledDelayed
+    honest = approximation.step
 
     def length(self: library.CompiledDelayed, ring: library.RingOffsets) -> int:
         return 4
@@ -93,9 +93,9 @@ def test_a_line_of_another_kind_proves_nothing(tongue: Tongue, checker: Checker)
     for fault in ("length", "written", "reading"):
         with pytest.MonkeyPatch.context() as patch:
             if fault == "length":
-                patch.setattr(rail, "_length", length)
+                patch.setattr(approximation, "_length", length)
             else:
-                patch.setattr(rail, "step", step)
+                patch.setattr(approximation, "step", step)
             outcome = explored(one, executable, checked.plan(one), 10**6)
         assert "whatever its delay lines hold" not in outcome.detail, fault
         assert "also with unknown values" in outcome.detail, fault

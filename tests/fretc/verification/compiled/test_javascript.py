@@ -18,7 +18,9 @@ from tests.node import needs_node
 def test_a_counter_without_end_has_too_many_states(tmp_path: Path) -> None:
     one = requirement(WITHIN)
     endless = edited(
-        given_javascript(one), "rail.oldest_1 < 3 ? rail.oldest_1 + 1 : 3;", "rail.oldest_1 + 1;"
+        given_javascript(one),
+        "approximation.oldest_1 < 3 ? approximation.oldest_1 + 1 : 3;",
+        "approximation.oldest_1 + 1;",
     )
     checked, executable = Checker(javascript, tmp_path).prepared(endless, one)
     outcome = explored(one, executable, checked.plan(one), 200 if FULL else 40)

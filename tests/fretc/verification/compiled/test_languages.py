@@ -12,7 +12,7 @@ import pytest
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import ClaimResult
 from compiler.targets.python.monitor import text
-from fretc.verification.compiled.readings import PythonRail
+from fretc.verification.compiled.readings import PythonApproximation
 from fretc.verification.compiled.text import UnexpectedLayoutError
 from fretc.verification.compiled.verifying import explored, verified
 from fretc.verification.engines.sandbox import CallLimits
@@ -146,7 +146,7 @@ def test_what_is_made_of_a_text_is_the_same_each_time(tongue: Tongue, tmp_path: 
 @pytest.mark.slow
 @each("sentence", SENTENCES)
 def test_the_reference_tells_what_the_monitor_in_python_tells(sentence: str) -> None:
-    """Saved and loaded at each tick, on both rails."""
+    """Saved and loaded at each tick, on both approximations."""
     one = requirement(sentence)
     choose = random.Random(sentence)
     machine, reference = load("r1", text(one)), load("r1", text(one))
@@ -154,12 +154,15 @@ def test_the_reference_tells_what_the_monitor_in_python_tells(sentence: str) -> 
     rows: list[tuple[Truth, ...]] = [
         tuple(choose.choice([False, True, True, None]) for _ in atoms) for _ in range(60)
     ]
-    rails = [PythonRail(reference, one, atoms, doubt=doubt) for doubt in (False, True)]
-    states = [rail.save() for rail in rails]
+    approximations = [
+        PythonApproximation(reference, one, atoms, is_possible=is_possible)
+        for is_possible in (False, True)
+    ]
+    states = [approximation.save() for approximation in approximations]
     for row, (outcome,) in zip(rows, of_python(machine, rows), strict=True):
         for i, expected in enumerate((outcome.certain, outcome.possible)):
-            assert rails[i].step(states[i], row)[:-1] == tuple(expected)
-            states[i] = rails[i].save()
+            assert approximations[i].step(states[i], row)[:-1] == tuple(expected)
+            states[i] = approximations[i].save()
 
 
 # What is wrong --------------------------------------------------------------------------------

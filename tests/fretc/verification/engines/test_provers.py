@@ -291,7 +291,7 @@ def test_dafny_rejects_mutants_and_nothing_else() -> None:
         modules(
             (
                 only(late_and_forwarding(), "InvariantHolds", "CommandCallback"),
-                only(released_at_once_and_late(), "HeldIsOwed", "NeverViolated", *outputs),
+                only(released_at_once_and_late(), "HoldIsPending", "NeverViolated", *outputs),
                 only(counted, "InvariantHolds"),
                 only(stopped, "InvariantHolds"),
             )
@@ -299,7 +299,7 @@ def test_dafny_rejects_mutants_and_nothing_else() -> None:
     )
     assert answer.result is ClaimResult.NOT_CHECKED
     assert re.findall(r"`(\w+)` \(line", answer.detail) == [
-        *("CommandCallback", "InvariantHolds", "HeldIsOwed", "NeverViolated")
+        *("CommandCallback", "InvariantHolds", "HoldIsPending", "NeverViolated")
     ]
 
 

@@ -55,7 +55,7 @@ class Simulation:
         near = self.choose.random() < 0.3
         stopped = self._stands()
         self.monitor.step(near=near, stopped=stopped)
-        (signals,) = self.monitor.must.signals()
+        (signals,) = self.monitor.certain.signals()
         request = bool(signals.trigger or signals.obligation_pending)
         self._send(request)
         end = self.now + self.channel.cells * PERIOD

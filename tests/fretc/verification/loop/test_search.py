@@ -339,7 +339,7 @@ def test_a_safety_function_that_remembers_more_than_is_put_back_is_not_stepped(
     known = case(WITHIN.format(3))
     text = without_step(known.safety)
     for old, new in (
-        ('        "doubt",\n', f'        "doubt",\n        "{cell}",\n'),
+        ('        "is_possible",\n', f'        "is_possible",\n        "{cell}",\n'),
         ('        "oldest_1",\n    )', f'        "oldest_1",\n        "{cell}",\n    )'),
         (
             "        self.oldest_1 = -1\n",

@@ -3,7 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fretc.verification.monitor import rails
+from fretc.verification.monitor import approximations
 
 LETTERS = ((False,), (True,))
 
@@ -46,10 +46,10 @@ def first_difference(left: Table, right: Table) -> int | None:
 def test_classes_and_pairs_agree(left: Table, right: Table) -> None:
     expected = first_difference(left, right)
     left.state = right.state = 0
-    result = rails.in_lock_step(left, right, LETTERS, 10**6, ("given",))
+    result = approximations.in_lock_step(left, right, LETTERS, 10**6, ("given",))
     if expected is None:
-        assert isinstance(result, rails.Equivalent)
+        assert isinstance(result, approximations.Equivalent)
         assert result.states <= len(left.rows) + len(right.rows)
     else:
-        assert isinstance(result, rails.Distinguished)
+        assert isinstance(result, approximations.Distinguished)
         assert len(result.word) == expected

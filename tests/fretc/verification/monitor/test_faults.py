@@ -77,19 +77,19 @@ FAULTS = (
     (WITHIN, "r1_broken < 0 and since_1", "r1_broken < 0 and since_2", REFUTED),
     (BEFORE, "False, False, False, since_2, False)", "False, False, False, since_2 and first, False)", REFUTED),
     (BEFORE, "False, False, False, since_2, False)", "False, False, False, False, False)", REFUSED),
-    (BEFORE, "must.r1_signals[5]", "must.r1_signals[4]", REFUSED),
-    (BEFORE, "rail.r1_signals[5]", "rail.r1_signals[4]", REFUSED),
-    (BEFORE, " and not (may.r1_broken >= 0)", "", REFUSED),
+    (BEFORE, "certain.r1_signals[5]", "certain.r1_signals[4]", REFUSED),
+    (BEFORE, "approximation.r1_signals[5]", "approximation.r1_signals[4]", REFUSED),
+    (BEFORE, " and not (possible.r1_broken >= 0)", "", REFUSED),
     # Unknown values.
-    (WITHIN, "q = not_q = doubt", "q = not_q = False", REFUSED),
-    (WITHIN, "q = not_q = doubt", "q = not_q = True", REFUSED),
-    (WITHIN, "q = not_q = doubt", "not_q = doubt", REFUSED),
-    (WITHIN, "q = not_q = doubt", "q = doubt", REFUSED),
-    (WITHIN, "known = False\n                    m = doubt", "m = doubt", REFUSED),
-    (WITHIN, "known = False\n                    m = doubt", "m = doubt\n                    known = True", REFUSED),
-    (WITHIN, "        doubt = self.doubt\n", "        doubt = False\n", REFUSED),
-    (WITHIN, "        self.doubt = doubt\n", "        self.doubt = False\n", REFUSED),
-    (WITHIN, "doubt: bool = False", "doubt: bool = True", REFUSED),
+    (WITHIN, "q = not_q = is_possible", "q = not_q = False", REFUSED),
+    (WITHIN, "q = not_q = is_possible", "q = not_q = True", REFUSED),
+    (WITHIN, "q = not_q = is_possible", "not_q = is_possible", REFUSED),
+    (WITHIN, "q = not_q = is_possible", "q = is_possible", REFUSED),
+    (WITHIN, "known = False\n                    m = is_possible", "m = is_possible", REFUSED),
+    (WITHIN, "known = False\n                    m = is_possible", "m = is_possible\n                    known = True", REFUSED),
+    (WITHIN, "        is_possible = self.is_possible\n", "        is_possible = False\n", REFUSED),
+    (WITHIN, "        self.is_possible = is_possible\n", "        self.is_possible = False\n", REFUSED),
+    (WITHIN, "is_possible: bool = False", "is_possible: bool = True", REFUSED),
     (WITHIN, "            not_q = not q\n", "", REFUSED),
     (WITHIN, "            not_q = not q\n", "            not_q = not p\n", REFUSED),
     (WITHIN, 'm = boolean(m, "m")', "pass", REFUSED),
@@ -102,7 +102,7 @@ FAULTS = (
     (FOR, "self.r1_signals = (p and before_1, since_1 and (not_q or m),", "self.r1_signals = (p and before_1, since_1 and (not q or m),", DIFFERS),
     (FOR, "before_1, kept_before_1 = kept_before_1, not_p", "before_1, kept_before_1 = kept_before_1, not p", DIFFERS),
     (WITHIN, "            or (m is not True and m is not False)\n", "", REFUSED),
-    (WITHIN, "            rail is not self.may\n            or", "           ", REFUSED),
+    (WITHIN, "            approximation is not self.possible\n            or", "           ", REFUSED),
     (WITHIN, "            self._step((m, p, q))\n", "", REFUSED),
     (WITHIN, "        return known\n", "        return True\n", REFUSED),
     # Steps.
@@ -167,12 +167,14 @@ def test_a_fault_comes_to_what_is_written_beside_it(fault: tuple[str, str, str, 
         ("            since_1 = oldest_1 >= 3\n", "            since_1 = oldest_1 > 2\n"),
         ("\n        since_1 = oldest_1 >= 3\n", "\n        since_1 = oldest_1 > 2\n"),
         ("\n        since_1 = oldest_1 >= 3\n", "\n        since_1 = oldest_1 >= 2\n"),
-        ("        rail.oldest_1 = oldest_1\n", ""),
-        ("            rail.r1_last = tick\n", "            rail.r1_last = 0\n"),
-        ("        rail.r1_signals = (m and p,", "        rail.r1_signals = (p,"),
+        ("        approximation.oldest_1 = oldest_1\n", ""),
+        ("            approximation.r1_last = tick\n", "            approximation.r1_last = 0\n"),
+        ("        approximation.r1_signals = (m and p,", "        approximation.r1_signals = (p,"),
     ],
 )
-def test_a_step_that_has_another_tick_in_it_than_its_rail_is_refused(old: str, new: str) -> None:
+def test_a_step_that_has_another_tick_in_it_than_its_approximation_is_refused(
+    old: str, new: str
+) -> None:
     """Even where it is an equal one: only one of both is explored."""
     text, examiner = judge(WITHIN)
     place = text.index(MARK)
@@ -181,7 +183,10 @@ def test_a_step_that_has_another_tick_in_it_than_its_rail_is_refused(old: str, n
 
 
 @pytest.mark.slow
-@each("name", "row tick doubt known must may rows refused Signals since other_name".split())
+@each(
+    "name",
+    "row tick is_possible known certain possible rows refused Signals since other_name".split(),
+)
 def test_a_parameter_of_another_name_than_its_proposition_has_is_refused(name: str) -> None:
     """`row` hid unknown values: it is what a step calls the values of a tick."""
     formalized = requirement("in m mode whenever longname the sw shall within 3 ticks satisfy q")
@@ -197,10 +202,10 @@ def test_a_parameter_of_another_name_than_its_proposition_has_is_refused(name: s
 @pytest.mark.slow
 @each(
     "name",
-    "known rows boolean tick doubt self advance signals marks CELLS p not_q r1_last __hidden".split(),
+    "known rows boolean tick is_possible self advance signals marks CELLS p not_q r1_last __hidden".split(),
 )
 def test_a_cell_has_no_name_that_something_else_has(name: str) -> None:
-    """`known`, put back into the rail, would say that nothing was unknown."""
+    """`known`, put back into the approximation, would say that nothing was unknown."""
     text, examiner = judge(WITHIN)
     place = text.index(MARK)
     assert examiner.kind(text[:place] + re.sub(r"\boldest_1\b", name, text[place:])) == REFUSED

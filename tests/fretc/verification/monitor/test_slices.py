@@ -133,5 +133,5 @@ def test_no_proposition_outside_of_a_slice_changes_anything(
             changed = {n: v if n in part else choose.random() < 0.5 for n, v in row.items()}
             one.advance([row])
             other.advance([changed])
-            assert one.must.signals()[place] == other.must.signals()[place]
-            assert one.must.marks()[place] == other.must.marks()[place]
+            assert one.certain.signals()[place] == other.certain.signals()[place]
+            assert one.certain.marks()[place] == other.certain.marks()[place]

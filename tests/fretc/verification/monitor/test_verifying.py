@@ -33,7 +33,7 @@ def check(sentence: str, text: str | None = None, limit: int = 10**6) -> ClaimOu
 def edited(text: str, *edits: tuple[str, str]) -> str:
     """The text with the one place of each edit changed, below the run time.
 
-    A change of the rail's tick is one of the step that has it in it.
+    A change of the approximation's tick is one of the step that has it in it.
     """
     place = text.index("# The requirements ---")
     head, own = text[:place], without_step(text)[place:]
@@ -126,7 +126,8 @@ def test_of_several_requirements_only_the_wrong_one_is_refuted() -> None:
 
 NAMES = (
     "door_open tick r1_open r1_broken r1_violation_inevitable first kept_first since_1 oldest_1 "
-    "known doubt m rows refused must every row Signals Window class not_p x_broken lambda q"
+    "known is_possible m rows refused certain every row Signals Window class not_p x_broken lambda "
+    "q"
 ).split()
 THREE_OF_THEM = [*zip(NAMES[::3], NAMES[1::3], NAMES[2::3], strict=True)]
 
@@ -141,7 +142,7 @@ def test_names_do_not_confuse_it(names: tuple[str, str, str]) -> None:
 
 
 @pytest.mark.slow
-@each("id", some(["tick", "doubt", "Monitor", "3", "a-b", "since_1", "self", "first"], 3))
+@each("id", some(["tick", "is_possible", "Monitor", "3", "a-b", "since_1", "self", "first"], 3))
 def test_ids_do_not_confuse_it(id: str) -> None:
     formalized = requirement(WITHIN, id)
     assert verified(formalized, target.text(formalized)).result is ClaimResult.PROVED
@@ -308,12 +309,12 @@ LOOP = "            tick += 1\n"
 BREACH = "            if r1_broken < 0 and since_1:\n"
 SINCE = "            since_1 = oldest_1 >= 3\n"
 INIT = "        self.tick = -1\n"
-RAIL = "class R1Rail"
+APPROXIMATION = "class R1Approximation"
 CLASS = '    CELLS: ClassVar["tuple[str, ...]"] = (\n'
-STEP = "        rail.tick = tick = rail.tick + 1\n"
+STEP = "        approximation.tick = tick = approximation.tick + 1\n"
 SIGNALS = "    def signals(self)"
 MONITOR = 'MONITOR: "type[Monitor]" = R1Monitor\n'
-UNKNOWN = "                    known = False\n                    p = doubt\n"
+UNKNOWN = "                    known = False\n                    p = is_possible\n"
 
 Edits = list[tuple[str, str]]
 
@@ -374,18 +375,18 @@ HIDDEN: dict[str, Edits] = {
         (INIT, INIT + "        self.ticks = 0\n"),
         *then(SINCE, "self.ticks = self.ticks + 1"),
     ],
-    "an attribute of the class": then(SINCE, "R1Rail.RUNS = 1"),
+    "an attribute of the class": then(SINCE, "R1Approximation.RUNS = 1"),
     "a list in the class": [
         *before(CLASS, "    SEEN: ClassVar[list[int]] = []\n"),
         *then(SINCE, "self.SEEN.append(1)"),
     ],
-    "a global": [*before(RAIL, "SEEN = [0]\n\n\n"), *then(SINCE, "SEEN[0] += 1")],
-    "a global statement": before(LOOP, logic("global R1Rail")),
+    "a global": [*before(APPROXIMATION, "SEEN = [0]\n\n\n"), *then(SINCE, "SEEN[0] += 1")],
+    "a global statement": before(LOOP, logic("global R1Approximation")),
     "a default argument": [
         ('rows: "Iterable[Sequence[Any]]")', 'rows: "Iterable[Sequence[Any]]", seen: int = [])')
     ],
     "a function beside": before(
-        RAIL, "def seen(counts=[0]):\n    counts[0] += 1\n    return counts[0] > 9\n\n\n"
+        APPROXIMATION, "def seen(counts=[0]):\n    counts[0] += 1\n    return counts[0] > 9\n\n\n"
     ),
     "a method beside": before(SIGNALS, "    def seen(self): return self.tick > 5000\n\n"),
     "a property": before(SIGNALS, "    @property\n    def seen(self): return self.tick > 5000\n\n"),
@@ -393,37 +394,50 @@ HIDDEN: dict[str, Edits] = {
     "a name in an expression": instead("since_1 = (seen := oldest_1 >= 3)"),
     "a comprehension": instead("since_1 = [oldest_1 >= 3][0]"),
     "a call": instead("since_1 = bool(oldest_1 >= 3)"),
-    "a change of the run time": before(RAIL, "Monitor.verdicts = lambda self: (PENDING,)\n\n\n"),
-    "another name of the run time": before(RAIL, "since = once\n\n\n"),
+    "a change of the run time": before(
+        APPROXIMATION, "Monitor.verdicts = lambda self: (PENDING,)\n\n\n"
+    ),
+    "another name of the run time": before(APPROXIMATION, "since = once\n\n\n"),
     "a change within a class": before(CLASS, "    sys.setrecursionlimit(5000)\n"),
     "a decorator": before("    def advance(", "    @copy.copy\n"),
-    "another base": [("class R1Rail:", "class R1Rail(dict):")],
+    "another base": [("class R1Approximation:", "class R1Approximation(dict):")],
     "a metaclass": [("class R1Monitor(Monitor)", "class R1Monitor(Monitor, metaclass=type)")],
-    "another class of the object": then(SINCE, "self.__class__ = R1Rail"),
+    "another class of the object": then(SINCE, "self.__class__ = R1Approximation"),
     "whether it is the same object": instead("since_1 = oldest_1 is q"),
     "True and 1 told apart": instead("since_1 = (oldest_1 >= 3) is not q"),
-    "the rail that may": instead("since_1 = oldest_1 >= 3 or doubt"),
-    "unknown values as they are not": [(UNKNOWN, UNKNOWN.replace("p = doubt", "p = False"))],
-    "an unknown value that is known": [(UNKNOWN, "                    p = doubt\n")],
+    "the approximation that may": instead("since_1 = oldest_1 >= 3 or is_possible"),
+    "unknown values as they are not": [(UNKNOWN, UNKNOWN.replace("p = is_possible", "p = False"))],
+    "an unknown value that is known": [(UNKNOWN, "                    p = is_possible\n")],
     "other rows": [("for (p, q) in rows", "for (q, p) in rows")],
     "no rows": [("        if tick == self.tick:\n            return True\n", "")],
     "a step of its own": before(
-        STEP, "        if rail.tick == 5000:\n            return VIOLATED\n"
+        STEP, "        if approximation.tick == 5000:\n            return VIOLATED\n"
     ),
-    "a verdict of its own": [("if rail.r1_broken >= 0:", "if rail.r1_broken > 0:")],
-    "a step of another rail": [("        rail = self.must\n", "        rail = self.may\n")],
+    "a verdict of its own": [
+        ("if approximation.r1_broken >= 0:", "if approximation.r1_broken > 0:")
+    ],
+    "a step of another approximation": [
+        ("        approximation = self.certain\n", "        approximation = self.possible\n")
+    ],
     "a step that takes what is unknown for false": [
         ("            or (q is not True and q is not False)\n", "")
     ],
-    "a step that takes all for known": [("rail is not self.may\n", "False\n")],
+    "a step that takes all for known": [("approximation is not self.possible\n", "False\n")],
     "a step in which nothing happens": [("            self._step((p, q))\n", "")],
-    "other verdicts": [("if must.r1_broken >= 0\n", "if must.r1_broken > 5000\n")],
-    "verdicts of another rail": [("        must = self.must\n", "        must = self.may\n")],
+    "other verdicts": [("if certain.r1_broken >= 0\n", "if certain.r1_broken > 5000\n")],
+    "verdicts of another approximation": [
+        ("        certain = self.certain\n", "        certain = self.possible\n")
+    ],
     "a run of its own": [
         ("        self.advance(rows)\n", "        self.advance(list(rows)[:5000])\n")
     ],
     "a reset of its own": before("    def run(", "    def reset(self) -> None:\n        pass\n\n"),
-    "another rail": [("    RAIL = R1Rail\n", "    RAIL = type('R1Rail', (R1Rail,), {})\n")],
+    "another approximation": [
+        (
+            "    APPROXIMATION = R1Approximation\n",
+            "    APPROXIMATION = type('R1Approximation', (R1Approximation,), {})\n",
+        )
+    ],
     "marks that are others": [("Marks(self.r1_broken,", "Marks(self.r1_open,")],
     "marks that are computed": [
         ("Marks(self.r1_broken,", "Marks(max(self.r1_broken, 5000 - self.tick),")
@@ -440,7 +454,10 @@ HIDDEN: dict[str, Edits] = {
         (MONITOR, MONITOR.replace("R1Monitor", "type('X', (R1Monitor,), {})"))
     ],
     "more when it is run": [
-        ("    sys.exit(main(MONITOR))", "    R1Rail.CELLS = ()\n    sys.exit(main(MONITOR))")
+        (
+            "    sys.exit(main(MONITOR))",
+            "    R1Approximation.CELLS = ()\n    sys.exit(main(MONITOR))",
+        )
     ],
 }
 
@@ -551,7 +568,7 @@ def test_a_window_whose_state_is_less_than_what_it_goes_by_is_not_proved(bounds:
     """Ages above its end are one state, and it would ask for more of them."""
     changed = edited(
         emitted(WITHIN),
-        ('        "doubt",\n', '        "doubt",\n        "w_1",\n'),
+        ('        "is_possible",\n', '        "is_possible",\n        "w_1",\n'),
         ('        "oldest_1",\n    )', '        "oldest_1",\n        "w_1",\n    )'),
         ("self.oldest_1 = -1\n", f"self.oldest_1 = -1\n        self.w_1 = Window({bounds})\n"),
         ("= self.oldest_1\n", "= self.oldest_1\n        w_1 = self.w_1\n"),

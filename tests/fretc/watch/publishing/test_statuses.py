@@ -22,7 +22,9 @@ states = st.builds(
 
 
 @given(states, st.sampled_from(["", "gone"]), st.booleans())
-def test_red_is_never_lost_and_green_owes_nothing(state: State, fault: str, violated: bool) -> None:
+def test_red_is_never_lost_and_green_has_nothing_pending(
+    state: State, fault: str, violated: bool
+) -> None:
     level = status_of(state, fault, violated=violated).level
     assert (level == ERROR) == (violated or state.verdict == "violated")
     assert level != OK or (state.obligation_pending is False and not fault)

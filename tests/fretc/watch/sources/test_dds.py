@@ -111,7 +111,7 @@ def agreed(fretc: Fretc, log: Path, first: float, last: float) -> dict[str, int]
     assert isinstance(recording, Recording)
     assert recording.intact, run.codes()
     rows: list[Any] = [[time, row] for time, row in audited_rows(plan, recording)]
-    assert node == {"rows": rows, "standings": verdicts, "resets": 0}
+    assert node == {"rows": rows, "statuses": verdicts, "resets": 0}
     triggers = sum(row["too_close"] is True for _, row in rows)
     unknown = sum(None in row.values() for _, row in rows)
     return {"ticks": len(rows), "triggers": triggers, "unknown": unknown, **verdicts}

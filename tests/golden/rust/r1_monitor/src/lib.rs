@@ -109,14 +109,14 @@ struct Literals {
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-struct Rail {
+struct Approximation {
     // !stopped S (too_close & !stopped)
     since_1: bool,
 }
 
-impl Rail {
+impl Approximation {
     const fn new() -> Self {
-        Rail {
+        Approximation {
             since_1: false,
         }
     }
@@ -144,14 +144,14 @@ impl Rail {
 /// What is remembered: what holds for certain, and what may hold.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Monitor {
-    certain: Rail,
-    possible: Rail,
+    certain: Approximation,
+    possible: Approximation,
 }
 
 impl Monitor {
     /// Before the first tick.
     pub const fn new() -> Self {
-        Monitor { certain: Rail::new(), possible: Rail::new() }
+        Monitor { certain: Approximation::new(), possible: Approximation::new() }
     }
 
     /// One tick: the outcome of each requirement after it.

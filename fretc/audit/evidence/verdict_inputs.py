@@ -1,10 +1,10 @@
 """The inputs of a verdict other than its log, as fingerprints of their canonical meaning.
 
-This is the one notion of change. Evidence records the basis of each of its results, a lock that of
-each review, and a later comparison uses the basis of now.
+This is the one notion of change. Evidence records the inputs of each of its results, a lock those
+of each review, and a later comparison uses the inputs of now.
 
 Fingerprints are of canonical meaning (`fretish.bindings.canonical`), and only what a requirement
-reads is part of its basis.
+reads is one of its inputs.
 """
 
 from __future__ import annotations
@@ -34,17 +34,17 @@ _WHY = {
     FRETC: "the audit was made with another version of fretc",
 }
 
-Basis = Mapping[str, str]
+VerdictInputs = Mapping[str, str]
 """SHA-256 of each of `KINDS`; for `FRETC` the version itself."""
 
 
-def basis(
+def of_requirement(
     entry: RequirementEntry,
     requirement: FormalizedRequirement | None,
     declarations: Declarations | None,
     topics: Iterable[str],
     monitor_sha256: str | None = None,
-) -> Basis:
+) -> VerdictInputs:
     """The verdict inputs of a requirement in its present state.
 
     Args:
@@ -81,7 +81,7 @@ def of_bindings(
     return digest(bound(declarations, requirement.watched)) if declarations and requirement else ""
 
 
-def outdated(recorded: Mapping[str, object], now: Basis) -> tuple[str, ...]:
+def outdated(recorded: Mapping[str, object], now: VerdictInputs) -> tuple[str, ...]:
     """The kinds of inputs that differ from the recorded ones, without mere consequences of others.
 
     Args:

@@ -1,9 +1,9 @@
 """What has changed: single changes of a project, with and without a new audit.
 
-`python -m tests.fretc.audit.evidence.test_basis` prints them as a table: what a change touches,
-whose evidence is then of something else, and whose review no longer stands. What each command has
-to say is computed from the links below, which are written down here, and nowhere taken from the
-program.
+`python -m tests.fretc.audit.evidence.test_verdict_inputs` prints them as a table: what a change
+touches, whose evidence is then of something else, and whose review no longer stands. What each
+command has to say is computed from the links below, which are written down here, and nowhere taken
+from the program.
 """
 
 import json
@@ -25,7 +25,7 @@ from fretc.audit.evidence.writer import text
 from fretc.audit.store.anywhere import read, source
 from fretc.report.make import make
 from fretc.traceability.chain import chains
-from fretc.traceability.lock import Lock, standings
+from fretc.traceability.lock import Lock, review_statuses
 from fretc.traceability.lock import read as read_lock
 from fretc.traceability.lock import text as lock_text
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -532,7 +532,7 @@ def test_a_change_is_in_the_chains_of_what_is_made_of_it_and_of_nothing_else(
         assert not isinstance(project, Diagnostic)
         of_evidence = any(name.startswith("evidence") for name in names)
         found = chains(project, summaries() if of_evidence else evidence)
-        suspect = {one.chain.requirement for one in standings(found, lock) if one.suspects}
+        suspect = {one.chain.requirement for one in review_statuses(found, lock) if one.suspects}
         change = CHANGES[names[0]]
         assert {one.requirement for one in found if one.outdated} == change.stale(False), names
         assert suspect == change.suspect(audited=False), names

@@ -1,9 +1,9 @@
 """Whether two monitors have the same signals on every trace, also with unknown values.
 
-A monitor consists of two runs of the same code, its rails: an unknown counts as false on one and as
-true on the other. Each rail of one monitor runs in lock step with that of the other over all
-valuations, including unknown values, until no new pair of states appears. At each step all signals
-and all marks are compared.
+A monitor consists of two runs of the same code, its approximations: an unknown counts as false in
+one and as true in the other. Each approximation of one monitor runs in lock step with that of the
+other over all valuations, including unknown values, until no new pair of states appears. At each
+step all signals and all marks are compared.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import Any, Protocol
 from compiler.logic.orders import Exclusion, only_possible
 from compiler.program.program import MARKS, SIGNALS
 from fretc.verification.monitor.equivalence import Classes, Pairs, Visited, word
-from fretc.verification.monitor.machine import RailState
+from fretc.verification.monitor.machine import ApproximationState
 from fretish.classes.frozen import dataclass
 from monitors.kernel import Monitor
 from monitors.kernel.verdicts import Truth
@@ -32,12 +32,12 @@ class Equivalent:
     """The monitors agree on every trace."""
 
     states: int
-    """Number of compared pairs of states of both rails."""
+    """Number of compared pairs of states of both approximations."""
 
 
 @dataclass(frozen=True, slots=True)
 class Distinguished:
-    """A trace of one rail at whose last tick the monitors differ.
+    """A trace of one approximation at whose last tick the monitors differ.
 
     A shortest one, unless there are too many pairs of states.
     """
@@ -49,7 +49,7 @@ class Distinguished:
 
 def compared(
     machine: Monitor,
-    place: int,
+    index: int,
     reference: Monitor,
     atoms: Sequence[str],
     limit: int,
@@ -59,7 +59,7 @@ def compared(
 
     Args:
         machine: monitor in the layout that fretc writes.
-        place: index of the requirement in the machine.
+        index: index of the requirement in the machine.
         reference: monitor of one requirement.
         atoms: order of the values in a valuation; the other propositions of the machine are false,
             and the requirement must not depend on them.
@@ -69,9 +69,9 @@ def compared(
     every = tuple(product((False, True, None), repeat=len(atoms)))
     letters = only_possible(every, atoms, excluded)
     states = 0
-    for doubt in (False, True):
-        left = _Rail(machine, place, doubt, atoms)
-        right = _Rail(reference, 0, doubt, atoms)
+    for is_possible in (False, True):
+        left = _Approximation(machine, index, is_possible, atoms)
+        right = _Approximation(reference, 0, is_possible, atoms)
         result = in_lock_step(left, right, letters, limit, _NAMES)
         if not isinstance(result, Equivalent):
             return result
@@ -87,17 +87,21 @@ _STARTS = (
 _TICK = 5
 
 
-class _Rail:
-    """A rail that can be put into any state, always at the same tick."""
+class _Approximation:
+    """An approximation that can be put into any state, always at the same tick."""
 
-    def __init__(self, monitor: Monitor, place: int, doubt: bool, atoms: Sequence[str]) -> None:
-        self._rail: Any = monitor.RAIL(doubt=doubt)
-        self._place = place
-        self._cells = RailState(self._rail)
+    def __init__(
+        self, monitor: Monitor, index: int, is_possible: bool, atoms: Sequence[str]
+    ) -> None:
+        self._approximation: Any = monitor.APPROXIMATION(is_possible=is_possible)
+        self._place = index
+        self._cells = ApproximationState(self._approximation)
         self._order = tuple(
             atoms.index(name) if name in atoms else None for name in monitor.PROPOSITIONS
         )
-        prefixes = tuple(n.removesuffix("_open") for n in self._rail.__slots__ if _is_open(n))
+        prefixes = tuple(
+            n.removesuffix("_open") for n in self._approximation.__slots__ if _is_open(n)
+        )
         self._marks = tuple((mark, f"{prefix}_{mark}") for prefix in prefixes for mark in MARKS)
 
     def save(self) -> Hashable:
@@ -110,12 +114,12 @@ class _Rail:
         marks: list[object] = []
         for start in _STARTS:
             self._cells.load(state)
-            self._rail.tick = _TICK
+            self._approximation.tick = _TICK
             for mark, name in self._marks:
-                setattr(self._rail, name, start.get(mark, -1))
-            self._rail.advance((row,))
-            marks += self._rail.marks()[self._place]
-        return (*map(bool, self._rail.signals()[self._place]), *marks)
+                setattr(self._approximation, name, start.get(mark, -1))
+            self._approximation.advance((row,))
+            marks += self._approximation.marks()[self._place]
+        return (*map(bool, self._approximation.signals()[self._place]), *marks)
 
 
 def _is_open(name: str) -> bool:
@@ -175,16 +179,16 @@ def _from(
     pairs = [start]
     origins: list[tuple[int, Any] | None] = [None]
     visited.add(*start)
-    for place, (first, second) in enumerate(pairs):  # The list grows during the loop.
+    for index, (first, second) in enumerate(pairs):  # The list grows during the loop.
         for letter in letters:
             actual, expected = left.step(first, letter), right.step(second, letter)
             if actual != expected:
                 signal = next(n for n, a, b in zip(names, actual, expected, strict=True) if a != b)
-                return Distinguished((*word(origins, place), letter), signal)
+                return Distinguished((*word(origins, index), letter), signal)
             reached = left.save(), right.save()
             if visited.add(*reached):
                 pairs.append(reached)
-                origins.append((place, letter))
+                origins.append((index, letter))
         if len(pairs) > limit:
             return None
     return Equivalent(len(pairs))

@@ -102,7 +102,7 @@ class StoredProgram:
     readings: tuple[RequirementValues, ...]
 
 
-def rail(program: Program, prefixes: Mapping[str, str]) -> StoredProgram:
+def stored_program(program: Program, prefixes: Mapping[str, str]) -> StoredProgram:
     """The program reduced to what signals need, with rings for windows and cells for marks.
 
     Args:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from compiler.project.project import Project
-from fretc.audit.evidence.basis import Basis, basis
+from fretc.audit.evidence.verdict_inputs import VerdictInputs, of_requirement
 from fretc.audit.refusals import refusals
 from fretish.documents import RequirementEntry
 
@@ -26,11 +26,11 @@ def audited_topics(project: Project) -> frozenset[str]:
     return frozenset(signal.path.topic for signal in used.signals.values())
 
 
-def bases(
+def all_verdict_inputs(
     project: Project,
     topics: frozenset[str] | None = None,
     monitors: Mapping[RequirementEntry, str] = MappingProxyType({}),
-) -> Mapping[RequirementEntry, Basis]:
+) -> Mapping[RequirementEntry, VerdictInputs]:
     """The verdict inputs of each requirement, retired ones included, by its entry.
 
     Args:
@@ -42,7 +42,7 @@ def bases(
     topics = audited_topics(project) if topics is None else topics
     requirements = {requirement.entry: requirement for requirement in project.formalized}
     return {
-        requirement: basis(
+        requirement: of_requirement(
             requirement,
             requirements.get(requirement),
             declarations,
