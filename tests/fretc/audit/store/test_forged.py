@@ -50,7 +50,8 @@ def others(value: Any) -> Iterator[Any]:
 def forgeries(value: Any, at: tuple[Step, ...] = ()) -> Iterator[tuple[tuple[Step, ...], Any]]:
     """Each place of a value, with what may be put there."""
     for other in others(value) if at else ():
-        yield at, other
+        if json.dumps(other) != json.dumps(value):
+            yield at, other
     parts: Any = value.items() if isinstance(value, dict) else ()
     for key, inner in enumerate(value) if isinstance(value, list) else parts:
         yield from forgeries(inner, (*at, key))
