@@ -254,7 +254,7 @@ def written(folder: Path, requirements: int, runs: int, share: float, form: str)
     (folder / STORE).mkdir()
     file = StoreFile(folder / STORE / "unfinished-1.sqlite")
     for place, run in enumerate(of_runs):
-        file.put(*packed(place, decoded(run, list[Result])))
+        file.put(packed(place, decoded(run, list[Result])))
     document = decoded({**head(known), "results": []}, EvidenceDocument)
     complete(file.path, document, file.close())
     publish(file.path)
