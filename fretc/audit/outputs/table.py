@@ -120,7 +120,7 @@ def _read_by(connection: sqlite3.Connection, query: str) -> set[str]:
 
     def authorize(action: int, table: str | None, *_: object) -> int:
         if action == sqlite3.SQLITE_READ and table is not None:
-            found.add(table)
+            found.add(table.lower())  # spelled as in the query, if no column is read
         return sqlite3.SQLITE_OK if action in READS else sqlite3.SQLITE_DENY
 
     connection.set_authorizer(authorize)
