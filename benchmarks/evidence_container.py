@@ -9,27 +9,31 @@ triggers and latencies in each run. Each step is done in a process of its own.
 from __future__ import annotations
 
 import argparse
+import os
 import random
 import tempfile
 import time
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Sequence
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
+from benchmarks.fleet import plan
 from compiler.files.records import UNSET, decoded, plain, replace
-from compiler.files.text_files import sha256
+from compiler.files.text_files import sha256, stamp
+from compiler.files.user_key import user_key
 from fretc.audit.evidence.reader import EvidenceFile
 from fretc.audit.evidence.reader import read as read_file
-from fretc.audit.evidence.schema import EvidenceDocument, Result
+from fretc.audit.evidence.schema import Result
+from fretc.audit.into_store import StoredAudit, StoreWriter
+from fretc.audit.many_logs import LogAudits, LogResult
 from fretc.audit.outputs.summary import run_query, summarize
 from fretc.audit.outputs.table import read as read_tables
+from fretc.audit.plan import Plan
 from fretc.audit.store.anywhere import source
-from fretc.audit.store.container import FILE, check_record, packed, record_of
-from fretc.audit.store.container import opened as opened_file
+from fretc.audit.store.container import FILE
 from fretc.audit.store.reader import Store
-from fretc.audit.store.writer import StoreFile, complete, publish
 from fretish.diagnostics.diagnostic import Diagnostic
 
 CHANGED = 12
@@ -123,29 +127,44 @@ def _violations(choose: random.Random, original: Result) -> list[dict[str, Any]]
 # Steps --------------------------------------------------------------------------------------------
 
 
-def write(path: Path, head: EvidenceDocument, runs: Iterator[list[Result]]) -> None:
-    file = StoreFile(path / "unfinished-1.sqlite")
-    for place, run in enumerate(runs):
-        file.put(*packed(place, run))
-    complete(file.path, head, file.close())
-    publish(file.path)
+class Night:
+    """An audit by the product's own writer; only the verdicts of the logs are made up."""
+
+    def __init__(self, evidence: str, runs: int, requirements: int, seed: int) -> None:
+        found = read_file(evidence)
+        assert isinstance(found, EvidenceFile), found
+        self.original = found.document.results[0]
+        self.runs, self.requirements, self.seed = runs, requirements, seed
+        self.making = 0.0
+        """Seconds of CPU that results took to make, which is not writing them."""
+
+    def audit(self, path: Path, plan: Plan) -> None:
+        key = user_key()
+        assert isinstance(key, bytes), key
+        logs = [str(log) for log in logs_of(path, self.runs)]
+        with StoreWriter(path, plan, logs, key, rehash=False) as session:
+            done = session.run(self._engine, lambda log: None)
+        assert isinstance(done, StoredAudit), done.message
+
+    def _engine(self, plan: Plan, logs: Sequence[str]) -> LogAudits:
+        for log in logs:
+            start = time.process_time()
+            run = run_of(self.original, int(Path(log).stem), self.requirements, self.seed)
+            self.making += time.process_time() - start
+            yield log, LogResult(tuple(run), (), read=True, stamp=stamp(log))
 
 
-def change(path: Path, fresh: dict[int, list[Result]]) -> None:
-    """As an audit does: the records of other runs are copied."""
-    before, file = store(path), StoreFile(path / "unfinished-1.sqlite")
-    with opened_file(before.path) as connection:
-        file.connection.execute("BEGIN")
-        for row in before.rows:
-            if row.place not in fresh:
-                record = record_of(connection, row.place)
-                check_record(row, record)
-                file.put(row, record)
-        file.connection.execute("COMMIT")
-    for place, run in fresh.items():
-        file.put(*packed(place, run))
-    complete(file.path, before.document, file.close())
-    publish(file.path)
+def logs_of(path: Path, runs: int) -> list[Path]:
+    """The logs of a store: small files, which are never read."""
+    return [path.with_name("logs") / f"{number:05}.mcap" for number in range(runs)]
+
+
+def written(logs: Sequence[Path], text: str) -> None:
+    """Write the logs, and wait until their times identify them."""
+    for log in logs:
+        log.parent.mkdir(exist_ok=True)
+        log.write_text(text)
+    time.sleep(2.1)
 
 
 def store(path: Path) -> Store:
@@ -212,34 +231,10 @@ def _timed(step: Step, *values: object) -> tuple[float, float]:
     return time.process_time() - start, most
 
 
-def _written(path: Path, evidence: str, runs: int, requirements: int) -> tuple[float, float]:
-    head, original = _original(evidence)
-    path.mkdir(exist_ok=True)
-    took = 0.0
-
-    def made() -> Iterator[list[Result]]:
-        nonlocal took  # making the results is not writing them
-        for number in range(runs):
-            start = time.process_time()
-            run = run_of(original, number, requirements)
-            took += time.process_time() - start
-            yield run
-
-    total, most = _timed(write, path, head, made())
-    return total - took, most
-
-
-def _changed(path: Path, evidence: str, runs: int, requirements: int) -> tuple[float, float]:
-    _, original = _original(evidence)
-    numbers = [round(n * runs / CHANGED) for n in range(CHANGED)]
-    fresh = {number: run_of(original, number, requirements, seed=1) for number in numbers}
-    return _timed(change, path, fresh)
-
-
-def _original(path: str) -> tuple[EvidenceDocument, Result]:
-    found = read_file(path)
-    assert isinstance(found, EvidenceFile), found
-    return replace(found.document, results=()), found.document.results[0]
+def _night(path: Path, requirements: str, *shape: Any) -> tuple[float, float]:
+    night, judged = Night(*shape), plan(requirements)
+    total, most = _timed(night.audit, path, judged)
+    return total - night.making, most
 
 
 def main() -> None:
@@ -247,6 +242,7 @@ def main() -> None:
     parser.add_argument("evidence", help="a JSON file with at least one result")
     parser.add_argument("--sizes", default="2000x15,1000x100", help="runs x requirements")
     parser.add_argument("--folder", help="for the files, default: a temporary one")
+    parser.add_argument("--requirements", default="requirements/r1.fret", help="of the result")
     options = parser.parse_args()
     alone = get_context("spawn")
 
@@ -258,12 +254,18 @@ def main() -> None:
     for size in options.sizes.split(","):
         runs, requirements = map(int, size.split("x"))
         with tempfile.TemporaryDirectory(dir=options.folder) as name:
-            path, shape = Path(name, "store"), (options.evidence, runs, requirements)
+            os.environ["XDG_STATE_HOME"] = name  # where the user's key is
+            path = Path(name, "store")
+            night = path, options.requirements, options.evidence, runs, requirements
+            logs = logs_of(path, runs)
+            written(logs, "first")
             print(f"{runs} runs x {requirements} requirements: seconds of CPU, most memory")
-            row("write", _written, path, *shape)
+            row("write", _night, *night, 0)
             for title, step in STEPS.items():
                 row(title, _timed, step, path)
-            row(f"{CHANGED} changed runs", _changed, path, *shape)
+            row("nothing has changed", _night, *night, 0)
+            written([logs[round(n * runs / CHANGED)] for n in range(CHANGED)], "second")
+            row(f"{CHANGED} runs have changed", _night, *night, 1)
             print(f"  {'size':24} {(path / FILE).stat().st_size / 1e6:7.1f} MB")
 
 

@@ -259,7 +259,7 @@ def written(folder: Path, requirements: int, runs: int, share: float, form: str)
     (folder / STORE).mkdir()
     store = StoreFile(folder / STORE / "unfinished-1.sqlite")
     for place, run in enumerate(of_runs):
-        store.put(*packed(place, decoded(run, list[Result])))
+        store.put(packed(place, decoded(run, list[Result])))
     document = decoded({**head(known), "results": []}, EvidenceDocument)
     complete(store.path, document, store.close())
     publish(store.path)

@@ -18,7 +18,7 @@ def write_document(folder: Path, document: EvidenceDocument) -> str:
     file = StoreFile(next_unfinished(folder))
     file.connection.execute("BEGIN")
     for place, run in enumerate(runs_of(document.results)):
-        file.put(*packed(place, run))
+        file.put(packed(place, run))
     file.connection.execute("COMMIT")
     sha256 = complete(file.path, document, file.close())
     publish(file.path)

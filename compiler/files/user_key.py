@@ -31,6 +31,14 @@ def user_key() -> bytes | Diagnostic:
         return diagnostic("unusable_user_key", path=path, reason=error.strerror or error)
 
 
+def known_user_key() -> bytes | None:
+    """The key if there is one; nothing is created."""
+    try:
+        return _read(_folder() / "journal.key")
+    except OSError:
+        return None
+
+
 def _folder() -> Path:
     variable = os.environ.get("XDG_STATE_HOME", "")
     state = (

@@ -7,14 +7,17 @@ file beside the evidence, and the next audit takes it over.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import closing, suppress
+from functools import cache, partial
+from itertools import groupby
+from operator import itemgetter
 from pathlib import Path
 from sqlite3 import Error as SqliteError
 
 from compiler.files.checked_json import SchemaError
 from compiler.files.checked_json import plain as parsed
-from compiler.files.records import UNSET, Raw, decoded, plain, replace
+from compiler.files.records import UNSET, Raw, decoded, json_bytes, plain, replace
 from compiler.files.templating import to_json
 from compiler.files.text_files import destination
 from fretc.audit.evidence.probabilities import Estimated
@@ -31,13 +34,16 @@ from fretc.audit.plan import Plan, keys
 from fretc.audit.store import container, earlier_store
 from fretc.audit.store.container import (
     FILE,
+    PackedRun,
     Row,
     StoreError,
+    bad_store,
     next_unfinished,
     packed,
     record_of,
     recovered,
     remove_file,
+    summary_of,
     unfinished,
     unpacked,
     whole_results,
@@ -86,24 +92,28 @@ class _ReusableLog:
     has_same_labels: bool
     """Whether that audit gave all runs the same labels."""
 
-    def record(self) -> bytes:
-        """Its record.
-
-        Raises:
-            SchemaError: the file has been replaced.
-        """
-        with container.opened(self.path) as connection:
-            return record_of(connection, self.row.place)
-
     def results(self) -> tuple[Result, ...]:
         """Its reusable results; none if its file has been replaced."""
         try:
-            run = unpacked(self.row, self.record(), Raw)
+            (packed_run,) = _stored(self.path, [self.row])
+            run = unpacked(self.row, packed_run.record, Raw)
             results = [*whole_results(run, range(self.row.results))]
         except SchemaError:
             return ()
         claims = self.claims
         return tuple(each for each in results if claims is None or each.requirement in claims)
+
+
+def _stored(path: Path, rows: Sequence[Row]) -> Iterator[PackedRun]:
+    """Some runs as a file holds them.
+
+    Raises:
+        SchemaError: the file has been replaced.
+    """
+    with container.opened(path) as connection:
+        for row in rows:
+            place = row.place
+            yield PackedRun(row, record_of(connection, place), summary_of(connection, place))
 
 
 class ReusableResults:
@@ -136,9 +146,12 @@ class ReusableResults:
 
     def _read(self, path: Path, folder: Path, key: bytes) -> None:
         with container.opened(path) as connection:
+            if not container.has_summaries(connection):
+                self.stale = True
+                return
             ((text,),) = connection.execute("SELECT plan FROM about LIMIT 2").fetchall()
             about = decoded(parsed(f"{text}"), StoredPlan) if text is not None else None
-            entries = [*Authenticity(folder, f"{text}", key).entries(connection)]
+            entries = [*Authenticity(os.path.realpath(folder), f"{text}", key).entries(connection)]
         authentic = [(row, entry) for row, entry in entries if entry is not None]
         self.foreign |= len(authentic) < len(entries)
         if about is None or not authentic:
@@ -208,7 +221,8 @@ class StoreWriter:
         """The files of audits that were stopped."""
         about = StoredPlan(plan.key, dict(keys(plan)), dict(plan.labels))
         self._about = to_json(plain(about))
-        self._authenticity = None if key is None else Authenticity(folder, self._about, key)
+        place = os.path.realpath(folder)
+        self._authenticity = None if key is None else Authenticity(place, self._about, key)
         self._file: StoreFile | None = None
         self._places = {log: index for index, log in enumerate(logs)}
         found = {log: self.earlier.find(log) for log in logs}
@@ -266,22 +280,24 @@ class StoreWriter:
             return not_written(self.folder, error)
         except StoreError as error:
             return error.diagnostic
+        except SchemaError as error:  # a file was replaced while it was read
+            return bad_store(str(self.folder), f"cannot be read: {error}")
         finally:  # an interruption may have come after a run was written and before it was counted
             if self._file is not None and self._file.is_open:
                 self.kept = self._file.reusable() - len(self.known)
 
     def _take_over(self, file: StoreFile) -> None:
         """Reuse the results of all known logs, in one transaction."""
-        source = self._plan.declarations.source
+        diagnostic_of = cache(partial(diagnostic, bindings=self._plan.declarations.source))
         file.connection.execute("BEGIN")
-        for log, (known, by) in self.known.items():
+        for log, known, by, run in self._known_runs():
             entry = replace(known.entry, known_by=by)
-            notes = tuple(self._one(diagnostic(each, source)) for each in entry.diagnostics)
+            notes = tuple(self._one(diagnostic_of(each)) for each in entry.diagnostics)
             self._note(log, entry.run, notes)
             self._read += 1
             if known.has_same_labels:
                 row = replace(known.row, place=self._places[log])
-                self._put(file, entry, row, known.record())
+                self._put(file, entry, run._replace(row=row))
             else:
                 own = entry.labels or UNSET
                 results = tuple(replace(one, labels=own) for one in known.results())
@@ -291,6 +307,19 @@ class StoreWriter:
         file.connection.execute("COMMIT")
         for path in {known.path for known, _ in self.known.values()} & {*self._stopped}:
             remove_file(path)
+
+    def _known_runs(self) -> Iterator[tuple[str, _ReusableLog, KnownBy, PackedRun]]:
+        """Each known log with its run, file by file, in the order of the file.
+
+        Raises:
+            SchemaError: a file has been replaced.
+        """
+        known = [(one.path, one.row.place, log) for log, (one, _) in self.known.items()]
+        for path, group in groupby(sorted(known), key=itemgetter(0)):
+            logs = [log for _, _, log in group]
+            runs = _stored(path, [self.known[log][0].row for log in logs])
+            for log, run in zip(logs, runs, strict=True):
+                yield log, *self.known[log], run
 
     def _take(self, file: StoreFile, log: str, own: LogResult) -> None:
         """Add the results of a log that was audited."""
@@ -322,22 +351,21 @@ class StoreWriter:
             self._of_log[log] = notes
 
     def _pack(self, file: StoreFile, entry: Entry, own: LogResult, log: str | None = None) -> None:
-        row, record = packed(self._places[log or entry.log], own.results)
-        self._put(file, entry, row, record)
+        self._put(file, entry, packed(self._places[log or entry.log], own.results))
 
-    def _put(self, file: StoreFile, entry: Entry, row: Row, record: bytes) -> None:
-        text = to_json(plain(entry))
-        mark = None if self._authenticity is None else self._authenticity.mark(row, text)
-        file.put(row, record, text, mark)
+    def _put(self, file: StoreFile, entry: Entry, run: PackedRun) -> None:
+        text = json_bytes(entry).decode()
+        mark = None if self._authenticity is None else self._authenticity.mark(run.row, text)
+        file.put(run, text, mark)
 
     def _finish(self, file: StoreFile) -> StoredAudit:
         head, rows = document(self._plan, (), ()), file.close()
-        store = Store(str(self.folder), "", head, file.path, rows)
+        store = Store(str(self.folder), "", head, file.path, rows, by_summaries=True)
         estimates = estimates_of(self._plan, (each for _, each in store.summaries()))
         if self._read:  # a mistyped name must not cost the evidence of the last audit
             head = replace(head, probabilities=estimates or UNSET)
             sha256 = complete(file.path, head, rows)
-            store = Store(str(self.folder), sha256, head, publish(file.path), rows)
+            store = Store(str(self.folder), sha256, head, publish(file.path), rows, True)
             for path in self._stopped:
                 remove_file(path)
             earlier_store.remove_tables(self.folder)

@@ -41,6 +41,7 @@ from fretc.audit.evidence.schema import (
     trials_of,
 )
 from fretc.audit.evidence.verdict_inputs import KINDS
+from fretc.audit.measurements.tallies import PropositionTally
 from fretc.audit.measurements.trials import Trials
 from fretish.bindings.canonical import digest
 from fretish.classes.frozen import dataclass
@@ -59,24 +60,25 @@ class ResultSummary:
     verdict: str
     finite: bool | None
     reason: str
-    ticks: int
-    start_ns: int | None
-    end_ns: int | None
-    triggers: int
-    answers: int
-    at_once: int
+    clock: str
+    ticks: Count
+    start_ns: Whole | None
+    end_ns: Whole | None
+    triggers: Count
+    answers: Count
+    at_once: Count
     """Number of answers at the tick of their trigger."""
-    open: int
-    violations: int
+    open: Count
+    violations: Count
     violated_ticks: int
-    first_violation_ns: int | None
-    first_violation_s: float | None
-    unknown: int
+    first_violation_ns: Whole | None
+    first_violation_s: Seconds | None
+    unknown: Count
     """Number of intervals of ticks at which it is unknown whether a demand was broken; if there is
     none and no verdict, of those at which inputs were unknown."""
     unknown_ticks: int
-    latency_median_s: float | None
-    latency_max_s: float | None
+    latency_median_s: Seconds | None
+    latency_max_s: Seconds | None
     intact: bool
     """False: messages of the log may have been lost."""
     fingerprints: Hashes
@@ -240,7 +242,7 @@ _AT = _FIELDS.index("fingerprints")
 _COMMON = tuple(
     (_FIELDS.index(name), kind)
     for kind, names in (
-        (str, "run requirement verdict reason judgement"),
+        (str, "run requirement verdict reason clock judgement"),
         (int, "ticks start_ns end_ns"),
         (float, "latency_median_s latency_max_s"),
     )
@@ -297,6 +299,7 @@ class CountedResult(PartialRecord, frozen=True, kw_only=True):
     latencies: tuple[Seconds, ...] = record_field(name="latencies_s")
     fingerprints: Hashes = record_field(name="hashes")
     assumptions: tuple[str, ...]
+    propositions: dict[str, PropositionTally]
     outcomes: Outcomes | UnsetType = record_field(name="trials", default=UNSET)
     unknown_inputs: tuple[_Interval, ...] | UnsetType = UNSET
 
@@ -322,6 +325,7 @@ def summary_of(result: Result | CountedResult) -> ResultSummary:
         verdict=result.verdict,
         finite=result.finite,
         reason=result.reason,
+        clock=result.clock,
         ticks=result.ticks,
         start_ns=result.start_ns,
         end_ns=result.end_ns,

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from fretc.audit.evidence.reader import VERDICTS
+from fretc.audit.outputs.table import READS
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
@@ -34,9 +35,13 @@ _LOG = "coalesce('log ' || log_sha256, 'summary ' || log_summary_sha256, 'run ' 
 """The identity of a log, equal for copies; for a log that was not read, its name."""
 _WORST_FIRST = " ".join(f"WHEN '{verdict}' THEN {rank}" for rank, verdict in enumerate(VERDICTS))
 _LOGS = f"(SELECT *, rowid AS place, {_LOG} AS log FROM results)"
+_USED = (
+    "run, requirement, verdict, reason, start_ns, end_ns, triggers, violations, first_violation_s, "
+    "answers, latency_median_s, latency_max_s, intact, log, place"
+)
 _COUNTED = f"""
     CREATE TEMP TABLE counted AS SELECT * FROM (
-        SELECT *, min(run) OVER (PARTITION BY log) AS name, row_number() OVER (
+        SELECT {_USED}, min(run) OVER (PARTITION BY log) AS name, row_number() OVER (
             PARTITION BY log, requirement
             ORDER BY CASE verdict {_WORST_FIRST} END, violations DESC, place) AS rank
         FROM {_LOGS})
@@ -60,7 +65,8 @@ _FAILED = f"""
     FROM (SELECT *, first_value(reason) OVER (PARTITION BY log ORDER BY
             verdict = '{kernel.SATISFIED}', verdict <> '{kernel.VIOLATED}',
             first_violation_s NULLS LAST, requirement) AS why
-        FROM counted)
+        FROM counted
+        WHERE log IN (SELECT log FROM counted WHERE verdict <> '{kernel.SATISFIED}'))
     GROUP BY log HAVING violated + not_shown > 0
     ORDER BY violated DESC, violations DESC, not_shown DESC, run"""
 _SLOWEST = f"""
@@ -76,10 +82,6 @@ _TORN = f"""
     SELECT requirement, min(run) AS run, group_concat(DISTINCT verdict) AS verdicts
     FROM {_LOGS}
     GROUP BY requirement, log HAVING count(DISTINCT verdict) > 1 ORDER BY requirement, run"""
-_READS = frozenset(
-    (sqlite3.SQLITE_SELECT, sqlite3.SQLITE_READ, sqlite3.SQLITE_FUNCTION, sqlite3.SQLITE_RECURSIVE)
-)
-"""What a query of a user may do: none of it reads or writes a file."""
 _MOST_SECONDS = 600
 _STEPS = 100_000
 """Steps of a query after which its time is looked at."""
@@ -153,7 +155,7 @@ def run_query(tables: sqlite3.Connection, query: str) -> QueryResult | Diagnosti
     """The answer to a query of the user, which can only read these tables."""
     end = time.monotonic() + _MOST_SECONDS
     tables.set_authorizer(
-        lambda action, *_: sqlite3.SQLITE_OK if action in _READS else sqlite3.SQLITE_DENY
+        lambda action, *_: sqlite3.SQLITE_OK if action in READS else sqlite3.SQLITE_DENY
     )
     tables.set_progress_handler(lambda: time.monotonic() > end, _STEPS)
     try:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 import os
 import sqlite3
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Container, Iterable, Iterator, Sequence
+from contextlib import suppress
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
@@ -13,8 +14,8 @@ from compiler.files.checked_json import LARGEST_COUNT, LEAST
 from compiler.files.records import plain
 from compiler.files.text_files import open_regular, unreadable
 from fretc.audit.evidence.result_summaries import (
-    CountedResult,
     EvidenceSource,
+    ResultSummary,
     RunFacts,
     summary_of,
 )
@@ -64,13 +65,14 @@ _TYPES = {
     "log_summary_sha256": "string",
 }
 """Column → its type. The meaning of each is in `docs/audit.md`."""
-_TIMES = ("start_ns", "end_ns", "first_violation_ns")
-_OF_LOG = ("clock", "size", "gaps", "findings", "fretc")
+_LARGE = ("start_ns", "end_ns", "first_violation_ns", "violated_ticks", "unknown_ticks")
+"""The columns whose values may be beyond 64 bits."""
+_OF_LOG = ("size", "gaps", "findings", "fretc")
 _HASHED = ("log", "sentence", "bindings", "monitor", "log_summary")
 _SHAS = tuple(f"{name}_sha256" for name in _HASHED)
-_COUNTED = tuple(name for name in _TYPES if name not in (*_TIMES, *_OF_LOG, *_SHAS))
-_counted, _times, _hashes = attrgetter(*_COUNTED), attrgetter(*_TIMES), attrgetter(*_HASHED)
-ROW = (*_COUNTED, *_TIMES, *_OF_LOG, *_SHAS)
+_COUNTED = tuple(name for name in _TYPES if name not in (*_LARGE, *_OF_LOG, *_SHAS))
+_counted, _large, _hashes = attrgetter(*_COUNTED), attrgetter(*_LARGE), attrgetter(*_HASHED)
+ROW = (*_COUNTED, *_LARGE, *_OF_LOG, *_SHAS)
 """The columns of `row_of`, in its order."""
 _SQL = {"string": "TEXT", "bool": "INTEGER", "int64": "INTEGER", "float64": "REAL"}
 _VIOLATION = tuple(name for name in Violation.__struct_fields__ if name != "surroundings")
@@ -82,6 +84,10 @@ TABLES = {
     "runs": (*_RUN, *_HEALTH, "labels"),
 }
 """Table → its columns. Lists and objects are JSON."""
+READS = frozenset(
+    (sqlite3.SQLITE_SELECT, sqlite3.SQLITE_READ, sqlite3.SQLITE_FUNCTION, sqlite3.SQLITE_RECURSIVE)
+)
+"""What a query of a user may do: none of it reads or writes a file."""
 
 
 def read(paths: Sequence[str], query: str | None = None) -> sqlite3.Connection | Diagnostic:
@@ -89,13 +95,13 @@ def read(paths: Sequence[str], query: str | None = None) -> sqlite3.Connection |
 
     Args:
         paths: stores, evidence files, and tables that `--parquet` wrote.
-        query: only the tables that it names are filled; None: only `results`.
+        query: only the tables that it reads are filled; None: only `results`.
     """
-    names = [name for name in TABLES if name == "results" or name in (query or "").lower()]
     connection = sqlite3.connect("", isolation_level=None)  # beyond some size it is on the disk
     connection.execute("PRAGMA journal_mode=OFF")
     for name, columns in TABLES.items():
         connection.execute(f"CREATE TABLE {name} ({', '.join(columns)})")
+    names = {"results"} if query is None else _read_by(connection, query)
     connection.execute("CREATE TABLE given AS SELECT * FROM results")
     for path in paths:
         wrong = _add(connection, path, names)
@@ -108,7 +114,23 @@ def read(paths: Sequence[str], query: str | None = None) -> sqlite3.Connection |
     return connection
 
 
-def _add(connection: sqlite3.Connection, path: str, names: Sequence[str]) -> Diagnostic | None:
+def _read_by(connection: sqlite3.Connection, query: str) -> set[str]:
+    """The tables that a query reads; none if it is wrong, which its execution will say."""
+    found: set[str] = set()
+
+    def authorize(action: int, table: str | None, *_: object) -> int:
+        if action == sqlite3.SQLITE_READ and table is not None:
+            found.add(table.lower())  # spelled as in the query, if no column is read
+        return sqlite3.SQLITE_OK if action in READS else sqlite3.SQLITE_DENY
+
+    connection.set_authorizer(authorize)
+    with suppress(sqlite3.Error, sqlite3.Warning, ValueError):
+        connection.execute(f"EXPLAIN {query}")
+    connection.set_authorizer(None)
+    return found
+
+
+def _add(connection: sqlite3.Connection, path: str, names: Container[str]) -> Diagnostic | None:
     if not os.path.isdir(path):
         try:
             with open_regular(path) as file:
@@ -123,11 +145,12 @@ def _add(connection: sqlite3.Connection, path: str, names: Sequence[str]) -> Dia
             return None
         if not start.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"{"):
             return diagnostic("neither_table_nor_evidence", Source(path, "").span(), path=path)
-    source = required_source(path)
+    source = required_source(path, by_summaries=True)
     if isinstance(source, Diagnostic):
         return source
     try:
-        _insert(connection, "given", rows(source))
+        if "results" in names:
+            _insert(connection, "given", rows(source))
         if "violations" in names:
             _insert(connection, "violations", _violations(source))
         if "runs" in names:
@@ -147,28 +170,31 @@ def _insert(connection: sqlite3.Connection, table: str, rows: Iterable[tuple[Any
 
 def rows(source: EvidenceSource) -> Iterator[tuple[Any, ...]]:
     """The row of each result in the table `results`."""
-    results: Iterable[Result | CountedResult]
     if isinstance(source, Store):
-        results = source.counted()
+        for run in source.run_summaries():
+            health = run.facts.health
+            yield from (_row(each, health, source.fretc) for each in run.results)
     else:
-        results = (result for _, result in source.details([n for n, _ in source.summaries()]))
-    return (row_of(result, source.fretc) for result in results)
+        for _, result in source.details([n for n, _ in source.summaries()]):
+            yield row_of(result, source.fretc)
 
 
-def row_of(result: Result | CountedResult, fretc: str) -> tuple[Any, ...]:
+def row_of(result: Result, fretc: str) -> tuple[Any, ...]:
     """The row of a result, with the columns of `ROW`.
 
     Args:
         result: a record of evidence.
         fretc: the version of fretc that wrote the result.
     """
-    summary, health = summary_of(result), result.health
-    prints = summary.fingerprints
+    return _row(summary_of(result), result.health, fretc)
+
+
+def _row(summary: ResultSummary, health: Health, fretc: str) -> tuple[Any, ...]:
     return (
         *_counted(summary),
-        *map(_held, _times(summary)),
-        *(result.clock, health.size, len(health.gaps), len(health.findings), fretc),
-        *(each or None for each in _hashes(prints)),
+        *map(_held, _large(summary)),
+        *(health.size, len(health.gaps), len(health.findings), fretc),
+        *(each or None for each in _hashes(summary.fingerprints)),
     )
 
 

@@ -6,13 +6,16 @@ import os
 from collections import deque
 from dataclasses import replace
 
+from compiler.files.user_key import known_user_key
 from fretc.audit.evidence import reader as files
 from fretc.audit.evidence.reader import EvidenceFile
 from fretc.audit.evidence.result_summaries import EvidenceSource
 from fretish.diagnostics.diagnostic import Diagnostic, Severity
 
 
-def source(path: str, *, in_full: bool = False) -> EvidenceSource | Diagnostic:
+def source(
+    path: str, *, in_full: bool = False, by_summaries: bool = False
+) -> EvidenceSource | Diagnostic:
     """An evidence source that reads a store run by run; a note if it does not exist yet.
 
     Its methods raise `StoreError` if a store turns out to be invalid.
@@ -20,13 +23,15 @@ def source(path: str, *, in_full: bool = False) -> EvidenceSource | Diagnostic:
     Args:
         path: a file, or the folder of a store.
         in_full: check all of each record of a store; otherwise what is read of it.
+        by_summaries: count by the summaries of a store that the user's key authenticates, without
+            a look into its records.
     """
     if not os.path.isdir(path):
         return files.read(path)
     from fretc.audit.store.container import StoreError
     from fretc.audit.store.reader import Store, opened
 
-    store = opened(path)
+    store = opened(path, known_user_key() if by_summaries else None)
     try:
         if in_full and isinstance(store, Store):
             deque(store.results(), maxlen=0)
@@ -53,10 +58,12 @@ def read(path: str) -> EvidenceFile | Diagnostic:
         return error.diagnostic
 
 
-def required_source(path: str, *, in_full: bool = False) -> EvidenceSource | Diagnostic:
+def required_source(
+    path: str, *, in_full: bool = False, by_summaries: bool = False
+) -> EvidenceSource | Diagnostic:
     """An evidence source; an error if the evidence does not exist."""
-    result = source(path, in_full=in_full)
-    return replace(result, severity=Severity.ERROR) if isinstance(result, Diagnostic) else result
+    found = source(path, in_full=in_full, by_summaries=by_summaries)
+    return replace(found, severity=Severity.ERROR) if isinstance(found, Diagnostic) else found
 
 
 def required(path: str) -> EvidenceFile | Diagnostic:

@@ -1,8 +1,9 @@
 """The container of a store: one SQLite file with a row for each run.
 
 A row has the results of a run as JSON, compressed with zstd: the objects of an evidence file, with
-what they share in one place. Nothing is stored twice, so that nothing can contradict itself. The
-identity of the evidence is the SHA-256 of its head and its records, whatever the file looks like.
+what they share in one place. Beside it is a summary that is made from them
+(`fretc.audit.store.run_summaries`). The identity of the evidence is the SHA-256 of its head and its
+records, whatever the file looks like.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import stat
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import closing, contextmanager
 from pathlib import Path
-from typing import Annotated, Any, Generic, TypeVar
+from typing import Annotated, Any, Generic, NamedTuple, TypeVar
 
 import zstandard
 
@@ -35,6 +36,7 @@ from compiler.files.records import (
     plain,
 )
 from fretc.audit.evidence.schema import Result
+from fretc.audit.store.run_summaries import run_summary
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
 from fretish.system.files import NO_LINK, NO_WAIT, TO_READ
@@ -48,13 +50,21 @@ LARGEST = 2**30
 """The most bytes of the results of a run, as JSON."""
 _LEVEL = 9
 _APPLICATION = 0x66726574
+_ABOUT = "CREATE TABLE about (head TEXT, sha256 TEXT, plan TEXT)"
 _TABLES = (
-    "CREATE TABLE about (head TEXT, sha256 TEXT, plan TEXT)",
+    _ABOUT,
     "CREATE TABLE runs (place INTEGER PRIMARY KEY, results INTEGER, size INTEGER, sha256 TEXT, "
-    "packed_sha256 TEXT, entry TEXT, mark TEXT, record BLOB)",
+    "packed_sha256 TEXT, summary_sha256 TEXT, entry TEXT, mark TEXT, summary BLOB, record BLOB)",
 )
 """`about` has one row; its head is an evidence file without results. `place` is the position of a
 run, `size` the number of bytes of its JSON."""
+_TABLES_WITHOUT_SUMMARIES = (
+    _ABOUT,
+    "CREATE TABLE runs (place INTEGER PRIMARY KEY, results INTEGER, size INTEGER, sha256 TEXT, "
+    "packed_sha256 TEXT, entry TEXT, mark TEXT, record BLOB)",
+)
+"""The tables of an earlier version, which are only read."""
+_LAYOUTS = [[(table,) for table in layout] for layout in (_TABLES, _TABLES_WITHOUT_SUMMARIES)]
 
 
 class StoreError(Exception):
@@ -131,6 +141,16 @@ class Row(Record, frozen=True):
     size: Annotated[int, Meta(ge=0, le=LARGEST)]
     sha256: Sha256
     packed_sha256: Sha256
+    summary_sha256: Sha256 | None = None
+    """Of the packed summary; None: an earlier version wrote the store, without summaries."""
+
+
+class PackedRun(NamedTuple):
+    """A run as a store holds it."""
+
+    row: Row
+    record: bytes
+    summary: bytes
 
 
 def identity(head: str, rows: Sequence[Row]) -> str:
@@ -139,12 +159,13 @@ def identity(head: str, rows: Sequence[Row]) -> str:
     return hashlib.sha256("\n".join(lines).encode()).hexdigest()
 
 
-def packed(index: int, results: Sequence[Result]) -> tuple[Row, bytes]:
-    """The record of a run."""
+def packed(place: int, results: Sequence[Result]) -> PackedRun:
+    """The record of a run, and its summary."""
     data = record_text(results)
     record = zstandard.ZstdCompressor(level=_LEVEL).compress(data)
-    hashes = (hashlib.sha256(each).hexdigest() for each in (data, record))
-    return Row(index, len(results), len(data), *hashes), record
+    summary = zstandard.compress(run_summary(results).text)
+    hashes = (hashlib.sha256(each).hexdigest() for each in (data, record, summary))
+    return PackedRun(Row(place, len(results), len(data), *hashes), record, summary)
 
 
 def check_record(row: Row, record: bytes) -> None:
@@ -155,6 +176,16 @@ def check_record(row: Row, record: bytes) -> None:
     """
     if hashlib.sha256(record).hexdigest() != row.packed_sha256:
         raise SchemaError("a record is not the one that was written")
+
+
+def check_summary(row: Row, summary: bytes) -> None:
+    """Compare the bytes of a packed summary with its hash.
+
+    Raises:
+        SchemaError: they are others.
+    """
+    if hashlib.sha256(summary).hexdigest() != row.summary_sha256:
+        raise SchemaError("a summary is not the one that was written")
 
 
 def unpacked(row: Row, record: bytes, kind: type[T]) -> RunRecord[T]:
@@ -168,18 +199,38 @@ def unpacked(row: Row, record: bytes, kind: type[T]) -> RunRecord[T]:
     Raises:
         SchemaError: the record is damaged, or other than its row says.
     """
-    try:
-        if zstandard.frame_content_size(record) != row.size:
-            raise SchemaError("a record does not have the size that its row says")
-        data = zstandard.ZstdDecompressor().decompress(record)
-    except zstandard.ZstdError as error:
-        raise SchemaError(f"a record cannot be unpacked: {error}") from None
+    data = _unpacked(record, "a record", row.size)
     if hashlib.sha256(data).hexdigest() != row.sha256:
         raise SchemaError("a record is not the one that its row says")
     found = decoded_json(data, RunRecord[kind])  # type: ignore[valid-type]
     if len(found.results) != row.results:
         raise SchemaError("a run does not have the results that its row says")
     return found
+
+
+def unpacked_summary(row: Row, summary: bytes) -> bytes:
+    """The JSON of the summary of a run.
+
+    Args:
+        row: the row of the run.
+        summary: its packed summary, which nobody has checked.
+
+    Raises:
+        SchemaError: the summary is damaged.
+    """
+    check_summary(row, summary)
+    return _unpacked(summary, "a summary")
+
+
+def _unpacked(data: bytes, what: str, size: int | None = None) -> bytes:
+    """What was compressed; a size is compared before memory is used."""
+    try:
+        known = zstandard.frame_content_size(data)
+        if known != (known if size is None else size) or not 0 <= known <= LARGEST:
+            raise SchemaError(f"{what} does not have the size that its row says")
+        return zstandard.ZstdDecompressor().decompress(data)
+    except zstandard.ZstdError as error:
+        raise SchemaError(f"{what} cannot be unpacked: {error}") from None
 
 
 # Files -------------------------------------------------------------------------------------------
@@ -288,11 +339,17 @@ def opened(path: Path) -> Iterator[sqlite3.Connection]:
             for pragma in ("trusted_schema=OFF", "cell_size_check=ON", "query_only=ON"):
                 connection.execute(f"PRAGMA {pragma}")
             tables = connection.execute("SELECT sql FROM sqlite_master LIMIT 9").fetchall()
-            if tables != [(table,) for table in _TABLES]:
+            if tables not in _LAYOUTS:
                 raise SchemaError("it does not have the tables of this version of fretc")
             yield connection
     except sqlite3.Error as error:
         raise SchemaError(f"it is damaged: {error}") from None
+
+
+def has_summaries(connection: sqlite3.Connection) -> bool:
+    """Whether a store has summaries; one of an earlier version has none."""
+    columns = connection.execute("SELECT * FROM runs LIMIT 0").description
+    return ("summary", *[None] * 6) in columns
 
 
 def rows(connection: sqlite3.Connection) -> list[Row]:
@@ -301,10 +358,11 @@ def rows(connection: sqlite3.Connection) -> list[Row]:
     Raises:
         SchemaError: a row is invalid.
     """
-    names = ", ".join(Row.__struct_fields__)
+    without = () if has_summaries(connection) else ("summary_sha256",)
+    names = [name for name in Row.__struct_fields__ if name not in without]
     found: list[Row] = []
-    for values in connection.execute(f"SELECT {names} FROM runs ORDER BY place"):
-        row = decoded(dict(zip(Row.__struct_fields__, values, strict=True)), Row)
+    for values in connection.execute(f"SELECT {', '.join(names)} FROM runs ORDER BY place"):
+        row = decoded(dict(zip(names, values, strict=True)), Row)
         if found and row.place <= found[-1].place:
             raise SchemaError("its runs are in no order")
         found.append(row)
@@ -317,11 +375,24 @@ def record_of(connection: sqlite3.Connection, index: int) -> bytes:
     Raises:
         SchemaError: there is none.
     """
-    row = connection.execute("SELECT record FROM runs WHERE place = ?", (index,)).fetchone()
-    if row is None or not isinstance(row[0], bytes):
-        raise SchemaError("a record is missing")
-    record: bytes = row[0]
-    return record
+    return _bytes(connection, "record", index)
+
+
+def summary_of(connection: sqlite3.Connection, place: int) -> bytes:
+    """The packed summary of a run, in a store that has summaries.
+
+    Raises:
+        SchemaError: there is none.
+    """
+    return _bytes(connection, "summary", place)
+
+
+def _bytes(connection: sqlite3.Connection, column: str, place: int) -> bytes:
+    found = connection.execute(f"SELECT {column} FROM runs WHERE place = ?", (place,)).fetchone()
+    if found is None or not isinstance(found[0], bytes):
+        raise SchemaError(f"a {column} is missing")
+    data: bytes = found[0]
+    return data
 
 
 def bad_store(path: str, what: str) -> Diagnostic:

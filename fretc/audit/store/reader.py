@@ -1,7 +1,9 @@
 """A store as it is read: run by run, each record compared with its hash.
 
 Nothing in it is trusted: what does not fit its hash, or what no evidence has, is F516, never half a
-report. Counts and verdicts are taken from the records themselves.
+report. Counts and verdicts are taken from the records themselves, and each summary that does not
+fit its record is F516, too. Only queries and the end of an audit take them from the summaries, of
+a store whose every run the user's key authenticates (`fretc.audit.store.register`).
 """
 
 from __future__ import annotations
@@ -35,7 +37,6 @@ from fretc.audit.evidence.result_summaries import (
     ResultSummary,
     RunFacts,
     run_facts,
-    summary_of,
 )
 from fretc.audit.evidence.schema import (
     EvidenceDocument,
@@ -47,7 +48,7 @@ from fretc.audit.evidence.schema import (
     Violation,
 )
 from fretc.audit.measurements.tallies import PropositionTally
-from fretc.audit.store import container, earlier_store
+from fretc.audit.store import container, earlier_store, register
 from fretc.audit.store.container import (
     FILE,
     Row,
@@ -57,10 +58,13 @@ from fretc.audit.store.container import (
     identity,
     record_of,
     strict,
+    summary_of,
     unfinished,
     unpacked,
+    unpacked_summary,
     whole_results,
 )
+from fretc.audit.store.run_summaries import RunSummary, run_summary, summary_from
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 
@@ -87,10 +91,6 @@ class _Violations(PartialRecord, frozen=True):
     violations: Raw
 
 
-class _Propositions(PartialRecord, frozen=True):
-    propositions: dict[str, PropositionTally]
-
-
 @dataclass(frozen=True)
 class Store(EvidenceSource):
     """Evidence in a store. The methods that read records raise `StoreError`."""
@@ -98,18 +98,48 @@ class Store(EvidenceSource):
     path: Path
     """The container."""
     rows: Sequence[Row]
+    by_summaries: bool = False
+    """Whether summaries, facts and tallies are those that the audit wrote, without a look at the
+    records."""
 
     def summaries(self) -> Iterator[tuple[int, ResultSummary]]:
         """The summary of each result with its index, in order; the results of a run adjoin."""
-        return enumerate(map(summary_of, self.counted()))
+        return enumerate(chain.from_iterable(run.results for run in self.run_summaries()))
 
     def runs(self) -> Iterator[RunFacts]:
         """The facts of each run, in the order of their first results."""
+        if self.by_summaries:
+            return (run.facts for run in self.run_summaries())
         return map(run_facts, self._counted())
 
-    def counted(self) -> Iterator[CountedResult]:
-        """What is counted of each result, in order."""
-        return chain.from_iterable(self._counted())
+    def tallies(self) -> Iterator[dict[str, PropositionTally]]:
+        """The tally of each proposition in each run."""
+        return (run.tallies for run in self.run_summaries())
+
+    def run_summaries(self) -> Iterator[RunSummary]:
+        """The summary of each run, in order."""
+        if self.by_summaries:
+            for row, text in zip(self.rows, self._summary_texts(), strict=True):
+                assert text is not None
+                with self._valid():
+                    found = summary_from(text, row.results)
+                yield found
+        else:
+            for run, text in zip(self._counted(), self._summary_texts(), strict=True):
+                yield self._summary(run, text)
+
+    def _summary(self, results: Sequence[Result | CountedResult], text: bytes | None) -> RunSummary:
+        """The summary of all results of a run.
+
+        Args:
+            results: those of its record.
+            text: the JSON of its summary, which is compared; None: it has none.
+        """
+        found = run_summary(results)
+        with self._valid():
+            if text is not None and found.text != text:
+                raise SchemaError("a summary contradicts its record")
+        return found
 
     def _counted(self) -> Iterator[list[CountedResult]]:
         for run in self._runs(CountedResult):
@@ -130,10 +160,15 @@ class Store(EvidenceSource):
             row: [*group]
             for row, group in groupby(sorted({*indices}), lambda n: bisect_right(starts, n) - 1)
         }
-        for row, run in zip(of_row, self._runs(Raw, [*of_row]), strict=True):
+        chosen = [*of_row]
+        texts = self._summary_texts(chosen)
+        for row, run, text in zip(chosen, self._runs(Raw, chosen), texts, strict=True):
             with self._valid():
                 own = [index - starts[row] for index in of_row[row]]
-                yield from zip(of_row[row], whole_results(run, own), strict=True)
+                results = [*whole_results(run, own)]
+            if len(results) == self.rows[row].results:
+                self._summary(results, text)
+            yield from zip(of_row[row], results, strict=True)
 
     def results(self) -> Iterator[Result]:
         """All results, in order."""
@@ -167,11 +202,6 @@ class Store(EvidenceSource):
                     situations = UNSET if raw is UNSET else strict(raw, Situations)
                 yield index, situations
 
-    def tallies(self) -> Iterator[dict[str, PropositionTally]]:
-        """The tally of each proposition in each run."""
-        for run in self._runs(_Propositions):
-            yield {name: one for part in run.results for name, one in part.propositions.items()}
-
     def violations(self) -> Iterator[tuple[str, str, Sequence[Violation]]]:
         """Run, requirement and violations of each result that has some."""
         for run in self._runs(_Violations):
@@ -198,10 +228,19 @@ class Store(EvidenceSource):
             kind: what is decoded of each result.
             chosen: indices of runs, in order; None: all.
         """
-        rows = self.rows if chosen is None else [self.rows[n] for n in chosen]
         with self._valid(), container.opened(self.path) as connection:
-            for row in rows:
+            for row in self._chosen(chosen):
                 yield unpacked(row, record_of(connection, row.place), kind)
+
+    def _summary_texts(self, chosen: Sequence[int] | None = None) -> Iterator[bytes | None]:
+        """The JSON of the summary of each run, or of some, in order; None: it has none."""
+        with self._valid(), container.opened(self.path) as connection:
+            for row in self._chosen(chosen):
+                has_one = row.summary_sha256 is not None
+                yield unpacked_summary(row, summary_of(connection, row.place)) if has_one else None
+
+    def _chosen(self, chosen: Sequence[int] | None) -> Sequence[Row]:
+        return self.rows if chosen is None else [self.rows[n] for n in chosen]
 
     @contextmanager
     def _valid(self) -> Iterator[None]:
@@ -211,11 +250,13 @@ class Store(EvidenceSource):
             raise StoreError(bad_store(self.file, f"cannot be read: {error}")) from None
 
 
-def opened(path: str) -> Store | EvidenceFile | Diagnostic:
+def opened(path: str, key: bytes | None = None) -> Store | EvidenceFile | Diagnostic:
     """A store with the records that its head names; one with Parquet tables is read into memory.
 
     Args:
         path: the folder of the store.
+        key: of the user: a store that it authenticates is counted by its summaries; None: every
+            store is counted by its records.
     """
     file = Path(path, FILE)
     if not os.path.lexists(file):
@@ -231,12 +272,13 @@ def opened(path: str) -> Store | EvidenceFile | Diagnostic:
             head, rows = decoded(parsed(text), EvidenceDocument), container.rows(connection)
             if identity(text, rows) != sha256 or head.results:
                 raise SchemaError("its runs are not those of its head")
-            for row in rows:
+            by_summaries = key is not None and register.is_authentic(connection, file.parent, key)
+            for row in () if by_summaries else rows:
                 check_record(row, record_of(connection, row.place))
     except (SchemaError, ValueError, TypeError) as error:
         return bad_store(path, f"cannot be read: {error}")
     name = str(Path(path))  # signatures are beside it
-    return Store(name, sha256, head, file, rows)
+    return Store(name, sha256, head, file, rows, by_summaries)
 
 
 def evidence(store: Store) -> EvidenceFile:

@@ -17,10 +17,18 @@ from sqlite3 import Connection
 from typing import Annotated, Any
 
 from compiler.files.checked_json import SchemaError
-from compiler.files.checked_json import plain as parsed
-from compiler.files.records import Record, Whole, about, decoded
+from compiler.files.records import Record, Whole, about, decoded_json
 from compiler.files.text_files import Stamp, file_sha256, stamp
-from fretc.audit.store.container import Row, check_record, record_of, rows
+from fretc.audit.store.container import (
+    PackedRun,
+    Row,
+    check_record,
+    check_summary,
+    has_summaries,
+    record_of,
+    rows,
+    summary_of,
+)
 from fretc.audit.store.recordings import KnownBy
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
@@ -95,39 +103,51 @@ class StoredPlan(Record, frozen=True):
 class Authenticity:
     """The marks that authenticate the runs of one audit, in one place, for one user."""
 
-    folder: Path
+    place: str
+    """The path of the folder of the store, with symbolic links resolved."""
     plan: str
     """The JSON of the plan."""
     key: bytes
 
     def mark(self, row: Row, entry: str) -> str:
         """What only the user's key can make of a run."""
-        real_path = os.path.realpath(self.folder)
-        hashes = (row.sha256, row.packed_sha256)
-        text = json.dumps([real_path, self.plan, row.results, row.size, *hashes, entry])
+        hashes = (row.sha256, row.packed_sha256, row.summary_sha256)
+        text = json.dumps([self.place, self.plan, row.results, row.size, *hashes, entry])
         return hmac.digest(self.key, text.encode(), "sha256").hex()
 
     def entries(self, connection: Connection) -> Iterator[tuple[Row, Entry | None]]:
-        """Each run with its entry; None: the entry or its record is not authentic.
+        """Each run with its entry; None: the entry, the record or the summary is not authentic.
 
         Raises:
             SchemaError: the file is damaged.
         """
-        for row in rows(connection):
-            found = connection.execute(
-                "SELECT entry, mark FROM runs WHERE place = ?", (row.place,)
-            ).fetchone()
-            entry, mark = map(str, found)
-            yield row, self._entry(row, entry, mark, record_of(connection, row.place))
+        found = connection.execute("SELECT entry, mark FROM runs ORDER BY place")
+        for row, (entry, mark) in zip(rows(connection), found, strict=True):
+            run = PackedRun(
+                row, record_of(connection, row.place), summary_of(connection, row.place)
+            )
+            yield row, self._entry(run, f"{entry}", f"{mark}")
 
-    def _entry(self, row: Row, entry: str, mark: str, record: bytes) -> Entry | None:
-        if not hmac.compare_digest(mark.encode(), self.mark(row, entry).encode()):
+    def _entry(self, run: PackedRun, entry: str, mark: str) -> Entry | None:
+        if not hmac.compare_digest(mark.encode(), self.mark(run.row, entry).encode()):
             return None
         try:
-            check_record(row, record)
-            return decoded(parsed(entry), Entry)
+            check_record(run.row, run.record)
+            check_summary(run.row, run.summary)
+            return decoded_json(entry.encode(), Entry)
         except SchemaError:
             return None
+
+
+def is_authentic(connection: Connection, folder: Path, key: bytes) -> bool:
+    """Whether a user's key authenticates every run of a store.
+
+    Raises:
+        SchemaError: the file is damaged.
+    """
+    ((plan,),) = connection.execute("SELECT plan FROM about LIMIT 2")
+    own = Authenticity(os.path.realpath(folder), f"{plan}", key)
+    return has_summaries(connection) and all(entry for _, entry in own.entries(connection))
 
 
 # Diagnostics -------------------------------------------------------------------------------------

@@ -14,6 +14,7 @@ from fretc.audit.evidence.writer import text
 from fretc.audit.store import earlier_store
 from fretc.audit.store.container import (
     FILE,
+    PackedRun,
     Row,
     closed,
     identity,
@@ -25,6 +26,9 @@ from fretc.audit.store.container import (
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.system.files import replace as rename
+
+_COLUMNS = (*Row.__struct_fields__, "entry", "mark", "summary", "record")
+_INSERT = f"INSERT INTO runs ({', '.join(_COLUMNS)}) VALUES ({', '.join('?' * len(_COLUMNS))})"
 
 
 class StoreFile:
@@ -45,21 +49,16 @@ class StoreFile:
         self.connection.execute("UPDATE about SET plan = ?", (plan,))
         self.is_open = True
 
-    def put(
-        self, row: Row, record: bytes, entry: str | None = None, mark: str | None = None
-    ) -> None:
+    def put(self, run: PackedRun, entry: str | None = None, mark: str | None = None) -> None:
         """Write a run.
 
         Args:
-            row: its row.
-            record: its record.
+            run: its row, its record and its summary.
             entry: its entry in the register, as JSON.
             mark: what authenticates both (`fretc.audit.store.register`).
         """
-        names = Row.__struct_fields__
-        values = (*(getattr(row, name) for name in names), entry, mark, record)
-        columns = ", ".join((*names, "entry", "mark", "record"))
-        self.connection.execute(f"INSERT INTO runs ({columns}) VALUES (?,?,?,?,?,?,?,?)", values)
+        own = (getattr(run.row, name) for name in Row.__struct_fields__)
+        self.connection.execute(_INSERT, (*own, entry, mark, run.summary, run.record))
         self.runs += 1
 
     def reusable(self) -> int:

@@ -18,6 +18,7 @@ import pytest
 
 from compiler.files import text_files as files
 from compiler.files.user_key import user_key
+from fretc.audit import into_store
 from fretc.audit.into_store import StoredAudit, StoreWriter
 from fretc.audit.many_logs import (
     SEQUENTIAL,
@@ -29,6 +30,7 @@ from fretc.audit.many_logs import (
 )
 from fretc.audit.plan import Plan
 from fretc.audit.store import container
+from fretc.audit.store.anywhere import source
 from fretc.audit.store.container import Row
 from fretc.audit.store.reader import Store, evidence, opened
 from fretc.audit.store.writer import StoreFile
@@ -88,6 +90,13 @@ def content(folder: Path = STORE) -> tuple[str, list[Row]]:
     store = opened(str(folder))
     assert isinstance(store, Store), store
     return store.sha256, [*store.rows]
+
+
+def opened_in_full(folder: Path) -> Store:
+    """A store of which all has been checked."""
+    found = source(str(folder), in_full=True)
+    assert isinstance(found, Store), found
+    return found
 
 
 def known_by(folder: Path = STORE) -> list[str]:
@@ -168,6 +177,32 @@ def test_what_is_taken_over_is_what_would_be_made_from_nothing(
         assert content() == content(Path(f"anew{number}"))
         assert found.diagnostics == anew.diagnostics
         assert known_by() == ["read" if log in read else "stamp" for log in logs]
+
+
+@pytest.mark.slow
+def test_a_night_after_a_change_gives_the_store_of_an_audit_from_nothing(fretc: Fretc) -> None:
+    """The rows hold the hashes of each record and each summary as they are packed."""
+    stored()
+    damage("b.mcap")
+    found, names = stored()
+    assert names == ["b.mcap"]
+    anew, _ = stored(folder=Path("anew"))
+    assert content() == content(Path("anew"))
+    assert [*found.source.summaries()] == [*anew.source.summaries()]
+    assert [*found.source.summaries()] == [*opened_in_full(STORE).summaries()]
+
+
+@pytest.mark.slow
+def test_an_idle_night_reads_no_record(fretc: Fretc, monkeypatch: pytest.MonkeyPatch) -> None:
+    first, _ = stored()
+    before = [*first.source.summaries()]
+    for name in ("fretc.audit.into_store.unpacked", "fretc.audit.into_store.packed"):
+        monkeypatch.setattr(name, None)
+    monkeypatch.setattr("fretc.audit.store.register.file_sha256", None)
+    found, names = stored()
+    assert names == []
+    monkeypatch.setattr("fretc.audit.store.reader.unpacked", None)
+    assert [*found.source.summaries()] == before
 
 
 @pytest.mark.slow
@@ -325,6 +360,77 @@ def test_an_audit_that_is_stopped_leaves_the_store_of_the_last_one(fretc: Fretc)
     assert known() == {"a.mcap": "stamp"}
 
 
+STEPS = (
+    "StoreFile.put",
+    "StoreFile.close",
+    "complete",
+    "publish",
+    "remove_file",
+    "earlier_store.remove_tables",
+)
+"""What an audit calls to change files."""
+
+
+def killed_at(moment: int) -> bool:
+    """Audit in a process that is killed before or after a step; whether it came so far.
+
+    Args:
+        moment: the number of begins and ends of steps before that.
+    """
+    process = os.fork()
+    if process == 0:
+        count = iter(range(moment + 1))
+
+        def tick() -> None:
+            if next(count) == moment:
+                os.kill(os.getpid(), signal.SIGKILL)
+
+        def deadly(step: Any) -> Any:
+            def own(*values: Any) -> Any:
+                tick()
+                found = step(*values)
+                tick()
+                return found
+
+            return own
+
+        for name in STEPS:
+            *within, last = name.split(".")
+            place: Any = getattr(into_store, within[0]) if within else into_store
+            setattr(place, last, deadly(getattr(place, last)))
+        try:
+            stored()
+        finally:
+            os._exit(0)
+    return os.waitpid(process, 0)[1] == signal.SIGKILL
+
+
+@pytest.mark.slow
+def test_a_changed_night_that_is_killed_at_any_write_loses_nothing(fretc: Fretc) -> None:
+    first, _ = stored()
+    damage("b.mcap")
+    last, _ = stored(folder=Path("whole"))
+    shutil.copytree(STORE, "before")
+    most = next(moment for moment in range(100) if not killed_again(moment))
+    assert most >= 14, "three runs, the end of the file, its head and its name"
+    evidences = {first.source.sha256, last.source.sha256}
+    for moment in some(range(most), 5):
+        assert killed_again(moment)
+        assert opened_in_full(STORE).sha256 in evidences
+        assert {"a.mcap", "c.mcap"} <= known().keys()
+        stored()
+        assert content() == content(Path("whole"))
+        assert os.listdir(STORE) == ["evidence.sqlite"]
+
+
+def killed_again(moment: int) -> bool:
+    """From the store of the first night on."""
+    for path in STORE.iterdir():
+        path.unlink()
+    shutil.copy("before/evidence.sqlite", STORE)
+    return killed_at(moment)
+
+
 NEVER_DONE = """
 import os, time
 from fretc.audit import many_logs
@@ -433,6 +539,9 @@ def test_a_run_of_which_something_is_another_is_not_believed(fretc: Fretc) -> No
         "record = x'00'",
         "sha256 = packed_sha256",
         "packed_sha256 = sha256",
+        "summary = x'00'",
+        "summary_sha256 = sha256",
+        "summary_sha256 = NULL",
         "size = 1",
         "results = 2",
         "entry = replace(entry, 'read', 'stamp')",

@@ -178,6 +178,29 @@ def test_violations_and_runs_are_tables_if_a_query_names_them() -> None:
         assert answered(path, "SELECT * FROM results WHERE verdict = 'unknown'") == []
 
 
+def test_a_query_fills_the_tables_that_it_reads_however_it_names_them() -> None:
+    own_project = project(Path("known"))
+    found = result(own_project, "violated", violations=[violation(41, 44, 40)])
+    Path("evidence.json").write_text(json.dumps(evidence(own_project, found)), "utf-8")
+    cases: tuple[tuple[str, set[str]], ...] = (
+        ("SELECT sum(violations) FROM results", {"results"}),
+        ('SELECT count(*) FROM "RUNS"', {"runs"}),
+        (
+            "WITH v AS (SELECT * FROM Violations) SELECT 1 FROM v, results",
+            {"violations", "results"},
+        ),
+        ("SELECT 'violations' -- runs", set()),
+        ("no query", set()),
+    )
+    for query, filled in cases:
+        tables = read(["evidence.json"], query)
+        assert not isinstance(tables, Diagnostic)
+        with closing(tables):
+            counts = {name: tables.execute(f"SELECT count(*) FROM {name}").fetchone()[0]
+                      for name in ("results", "violations", "runs")}  # fmt: skip
+        assert {name for name, count in counts.items() if count} == filled, query
+
+
 def answered(path: str, query: str) -> list[tuple[Any, ...]]:
     tables = read([path], query)
     assert not isinstance(tables, Diagnostic), tables.message

@@ -14,11 +14,13 @@ import pytest
 import zstandard
 
 from compiler.files.checked_json import SchemaError
+from compiler.files.records import Raw, decoded_json
 from fretc.audit.evidence.writer import text
 from fretc.audit.store import container
 from fretc.audit.store.anywhere import read, source
-from fretc.audit.store.container import FILE, identity, rows
+from fretc.audit.store.container import FILE, RunRecord, identity, rows, whole_results
 from fretc.audit.store.reader import Store
+from fretc.audit.store.run_summaries import run_summary
 from fretc.audit.store.writer import is_store, remove
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.command import made_once
@@ -67,10 +69,22 @@ def with_text(store: Path, content: bytes, place: int = 0, **row: object) -> Non
         "sha256": sha256(content).hexdigest(),
         "packed_sha256": sha256(record).hexdigest(),
         "record": record,
+        **_summary_of(content),
     } | row
     names = ", ".join(f"{name} = ?" for name in own)
     edit(store, f"UPDATE runs SET {names} WHERE place = ?", *own.values(), place)
     seal(store)
+
+
+def _summary_of(content: bytes) -> dict[str, object]:
+    """The summary that fits a record; none, if it is no record."""
+    try:
+        run = decoded_json(content, RunRecord[Raw])
+        results = [*whole_results(run, range(len(run.results)))]
+    except SchemaError:
+        return {}
+    summary = zstandard.compress(run_summary(results).text) if results else b""
+    return {"summary": summary, "summary_sha256": sha256(summary).hexdigest()}
 
 
 def seal(store: Path) -> None:

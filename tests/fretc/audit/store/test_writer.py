@@ -29,7 +29,7 @@ def test_whatever_part_of_the_last_bytes_was_written_the_runs_before_are_whole(
     file = StoreFile(tmp_path / "unfinished-1.sqlite", "plan")
     sizes = []
     for place, run in enumerate(RUNS):
-        file.put(*packed(place, run))
+        file.put(packed(place, run))
         sizes.append((tmp_path / "unfinished-1.sqlite-wal").stat().st_size)
     base = (tmp_path / "unfinished-1.sqlite").read_bytes()
     changes = (tmp_path / "unfinished-1.sqlite-wal").read_bytes()
@@ -51,11 +51,11 @@ def test_whatever_part_of_the_last_bytes_was_written_the_runs_before_are_whole(
 
 def test_a_file_gets_its_name_when_it_is_complete(tmp_path: Path) -> None:
     before = StoreFile(tmp_path / "unfinished-1.sqlite")
-    before.put(*packed(0, RUNS[0]))
+    before.put(packed(0, RUNS[0]))
     complete(before.path, document(), before.close())
     publish(before.path)
     file = StoreFile(tmp_path / "unfinished-1.sqlite")
-    file.put(*packed(0, RUNS[1]))
+    file.put(packed(0, RUNS[1]))
     first = opened(str(tmp_path))
     assert isinstance(first, Store)
     sha256 = complete(file.path, document(), file.close())
