@@ -221,14 +221,14 @@ def hazard_of(name: str, table: Table) -> object:
     Path("hazards.toml").write_text(tomli_w.dumps({"HAZ-1": table}), "utf-8")
     found, said = hazards.hazards("hazards.toml")
     assert not said
-    return found.parents, found.accept, found.project, found.viewer
+    return found
 
 
 def waiver_of(name: str, table: Table) -> object:
     Path("waivers.toml").write_text(tomli_w.dumps({"R1": table}), "utf-8")
     found, said = waivers.read("waivers.toml", ["R1"], "2026-11-25")
     assert not said
-    return found.parents, found.accept, found.project, found.viewer
+    return found
 
 
 def settings_of(name: str, table: Table) -> object:
