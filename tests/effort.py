@@ -5,7 +5,9 @@ Logs that others have recorded are read where `FRETC_LOGS` names their folder.
 
 from __future__ import annotations
 
+import functools
 import os
+import sys
 from collections.abc import Iterable, Sequence
 from itertools import cycle, product
 from pathlib import Path
@@ -20,6 +22,29 @@ LOGS = Path(os.environ.get("FRETC_LOGS", ""))
 needs_logs = pytest.mark.skipif(
     "FRETC_LOGS" not in os.environ, reason="set FRETC_LOGS to the folder of the public logs"
 )
+
+
+def _calls_through_c(depth: int) -> bool:
+    """Whether functions may call each other through C so many times deep."""
+
+    @functools.cache
+    def deep(left: int) -> int:
+        return deep(left - 1) if left else 0
+
+    limit = sys.getrecursionlimit()
+    sys.setrecursionlimit(10 * depth)
+    try:
+        return deep(depth) == 0
+    except RecursionError:
+        return False
+    finally:
+        sys.setrecursionlimit(limit)
+
+
+needs_deep_calls = pytest.mark.skipif(
+    not _calls_through_c(1_500), reason="this Python calls through C only some hundred times deep"
+)
+"""CPython 3.12.1 allows 500: there deep sentences are refused earlier (F115)."""
 
 
 def full_only(why: str) -> pytest.MarkDecorator:

@@ -8,7 +8,7 @@ import pytest
 
 from tests.calls import calls
 from tests.command import Fretc, runner, write
-from tests.effort import FULL, some
+from tests.effort import FULL, needs_deep_calls, some
 
 BINDINGS = """[clock]
 tick = "100 ms"
@@ -74,6 +74,7 @@ def test_twice_the_size_costs_twice_as_much(fretc: Fretc, shape: str, command: s
     assert large - small < 2.5 * (small - least)
 
 
+@needs_deep_calls
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("command", "shape"), some(product(["check", "explain"], ["and, or", "xor", "arithmetic"]), 4)

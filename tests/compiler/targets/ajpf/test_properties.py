@@ -23,7 +23,7 @@ from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source
 from fretish.printer import canonical
 from tests.bound_requirements import bound_requirement as requirement
-from tests.effort import FULL, examples, some
+from tests.effort import FULL, examples, needs_deep_calls, some
 from tests.spot_oracle import equivalent
 from tests.strategies import Template, templates
 
@@ -482,6 +482,7 @@ def test_a_refusal_names_the_part_and_the_way_out(sentence: str, what: str, fix:
 
 
 @pytest.mark.slow
+@needs_deep_calls
 def test_nesting_has_an_end() -> None:
     names = (f"p{i}" for i in count())
     deep = "q"

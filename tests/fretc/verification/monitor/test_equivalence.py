@@ -16,7 +16,7 @@ from fretish import expressions as e
 from fretish import syntax as s
 from fretish.diagnostics.source import Source
 from fretish.parser import parse
-from tests.effort import FULL
+from tests.effort import FULL, needs_deep_calls
 from tests.strategies import sentences
 
 LONG = 10_000 if FULL else 1000
@@ -355,6 +355,7 @@ def test_letters_have_the_values_of_the_expressions(sentence: s.Sentence) -> Non
         assert letter == tuple(holds(formula, [row]) for formula in read)
 
 
+@needs_deep_calls
 def test_a_deep_expression_is_read() -> None:
     response: e.Expression = e.Name("q")
     for _ in range(1000):
