@@ -233,7 +233,12 @@ def main(arguments: "list[str]") -> int:
     return 0
 
 
-if __name__ == "__main__":
-    STATUS = main(sys.argv)
+def program() -> None:
+    """Run the node as a program, and end the process with its exit status."""
+    status = main(sys.argv)
     sys.stdout.flush()
-    os._exit(STATUS)  # No thread of ROS keeps the process alive.
+    os._exit(status)  # No thread of ROS keeps the process alive.
+
+
+if __name__ == "__main__":
+    program()

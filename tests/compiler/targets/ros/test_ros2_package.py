@@ -89,8 +89,10 @@ def test_colcon_builds_and_tests_the_package(package: Path) -> None:
     result = _colcon(workspace, "test-result", "--all")
     assert " 0 errors, 0 failures" in result
     assert int(result.split(" tests")[0].split()[-1]) >= 5
+    (libraries,) = shared.glob("lib/python*/site-packages")
     helped = subprocess.run(
         [shared / f"lib/{package.name}/interceptor.py", "--help"],
+        env={**os.environ, "PYTHONPATH": str(libraries)},
         capture_output=True,
         text=True,
         check=True,

@@ -23,6 +23,10 @@ setup(
     maintainer_email="safety@example.org",
     description="Monitors a mobile robot among obstacles, and stops it",
     license="0BSD",
-    entry_points={"console_scripts": [f"monitor = {NAME}.node:main"]},
-    scripts=[f"{NAME}/interceptor.py"],
+    entry_points={
+        "console_scripts": [
+            f"monitor = {NAME}.node:main",
+            f"interceptor.py = {NAME}.interceptor:program",
+        ]
+    },
 )
