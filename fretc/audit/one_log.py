@@ -163,7 +163,9 @@ def _phased(evidence: RunResult, phases: Phases | None) -> RunResult:
         return evidence
     probabilistic = evidence.trials is not None
     assert probabilistic or phases.verdict == evidence.verdict, "two verdicts at one phase"
-    addition = f"; {'this run alone ' if probabilistic else ''}{phases.text}" if phases.text else ""
+    addition = (
+        f"; {'in this run alone, ' if probabilistic else ''}{phases.text}" if phases.text else ""
+    )
     return replace(evidence, phases=phases, reason=f"{evidence.reason}{addition}")
 
 
@@ -356,7 +358,7 @@ def _unknown(evidence: RunResult, recording: Recording) -> str:
         return "no whole tick of the clock lies within the log"
     if not runs:
         return f"unknown where it matters{_of_whom(evidence)}"
-    return f"unknown at {_times(ticks, 'tick')}, first at tick {runs[0][0]}"
+    return f"undecided at {_times(ticks, 'tick')}, because inputs are unknown{_of_whom(evidence)}"
 
 
 def _of_whom(evidence: RunResult) -> str:

@@ -6,7 +6,7 @@
 | end by CPU time | system | system | thread |
 | end by memory | system | thread | thread |
 
-In WebAssembly there are neither timers nor threads: whoever runs Python there sets the limits.
+In WebAssembly there are neither timers nor threads: the host of Python sets the limits.
 
 A thread notices an excess only when a library lets Python's threads run. Callers have a limit on
 the wall clock, too.

@@ -78,8 +78,8 @@ def test_a_demand_that_is_answered_is_satisfied_with_its_latency() -> None:
     evidence = audited(EVENTUALLY, recorded([FAR, NEAR, FAR, FAR], [MOVING, MOVING, MOVING, STILL]))
     assert (evidence.verdict, evidence.latencies) == ("satisfied", (2.0,))
     assert evidence.reason == (
-        "held, 1 trigger, answered after 2 s; by phase of the ticks "
-        "satisfied at less than 1 %, inconclusive at 99 %, the nearest change is 1 ns away"
+        "held, 1 trigger, answered after 2 s; the verdict depends on where the ticks begin: "
+        "satisfied in less than 1 % of cases, inconclusive in 99 %; a shift of 1 ns changes it"
     )
     assert [moment.seconds for moment in evidence.triggers] == [1.0]
 
@@ -127,7 +127,10 @@ def test_a_stale_response_is_no_data_and_never_a_pass() -> None:
     sentence = "whenever near the rover shall immediately satisfy still"
     evidence = audited(sentence, recorded([FAR] * 5 + [NEAR], speeds))
     assert evidence.verdict == "no data"
-    assert evidence.reason.startswith("unknown at 1 tick, first at tick 5; by phase")
+    assert evidence.reason.startswith(
+        "undecided at 1 tick, because inputs are unknown: `still` at 2 ticks; the longest: `still` "
+        "from 4 s to 6 s (2 s): the last sample of `v` was too old; the verdict depends on "
+    )
 
 
 def test_a_damaged_log_shows_no_pass_but_a_violation() -> None:
