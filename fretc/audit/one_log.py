@@ -20,7 +20,7 @@ from fretc.audit.measurements.situations import Near, nowhere_known, situation_t
 from fretc.audit.measurements.states import states
 from fretc.audit.measurements.tallies import tally
 from fretc.audit.measurements.trials import Count, Trials
-from fretc.audit.measurements.unknown_inputs import unknown_inputs
+from fretc.audit.measurements.unknown_inputs import unknown_inputs, without_brackets
 from fretc.audit.measurements.violations import DemandText, violations
 from fretc.audit.phases.by_shift import Phases, phases
 from fretc.logs import log_diagnostics
@@ -364,7 +364,7 @@ def _unknown(evidence: RunResult, recording: Recording) -> str:
 def _of_whom(evidence: RunResult) -> str:
     """The propositions that were unknown at some tick."""
     parts = [
-        f"`{name}` at {_times(tally.unknown, 'tick')}"
+        f"`{without_brackets(name)}` at {_times(tally.unknown, 'tick')}"
         for name, tally in evidence.propositions.items()
         if tally.unknown
     ]
