@@ -163,9 +163,8 @@ def _phased(evidence: RunResult, phases: Phases | None) -> RunResult:
         return evidence
     probabilistic = evidence.trials is not None
     assert probabilistic or phases.verdict == evidence.verdict, "two verdicts at one phase"
-    addition = (
-        f"; {'in this run alone, ' if probabilistic else ''}{phases.text}" if phases.text else ""
-    )
+    alone = "in this run alone, " if probabilistic else ""
+    addition = f"; {alone}{phases.text}" if phases.text else ""
     return replace(evidence, phases=phases, reason=f"{evidence.reason}{addition}")
 
 
@@ -368,11 +367,10 @@ def _of_whom(evidence: RunResult) -> str:
         for name, tally in evidence.propositions.items()
         if tally.unknown
     ]
-    longest = max(
-        evidence.unknown_inputs, key=lambda one: one.last_tick - one.first_tick, default=None
-    )
-    when = f"; the longest: {longest.in_words(evidence.clock)}" if longest else ""
-    return f": {', '.join(parts)}{when}" if parts else ""
+    intervals = sorted(evidence.unknown_inputs, key=lambda one: one.first_tick - one.last_tick)
+    longest = [one.in_words(evidence.clock) for one in intervals[:1]]
+    several = [", ".join(parts), *(f"the longest: {one}" for one in longest)]
+    return f": {'; '.join(longest if len(intervals) == 1 else several)}" if parts else ""
 
 
 def _latency(evidence: RunResult) -> str:

@@ -68,9 +68,11 @@ def summary(assessments: Sequence[Assessment], book: SignatureBook) -> str:
     if not standings:
         return "No requirement has been reviewed."
     suspect = sum(standing.is_suspect for standing in standings)
-    verb = "stands" if suspect == 1 else "stand"
+    verb = "is" if suspect == 1 else "are"
     stands = (
-        f"; {suspect} of these reviews no longer {verb}" if suspect else ", all reviews are current"
+        f"; {suspect} of these reviews {verb} suspect: the requirement or a result changed since"
+        if suspect
+        else ", all reviews are current"
     )
     reviews = [standing.review for standing in standings if standing.review is not None]
     unsigned = sum(not of_review(book, standing).is_good for standing in reviews)

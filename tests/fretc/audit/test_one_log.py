@@ -117,8 +117,15 @@ def test_an_unknown_trigger_is_no_data() -> None:
     evidence = audited(EVENTUALLY, recorded([FAR, float("nan"), FAR], [MOVING, MOVING, STILL]))
     assert evidence.verdict == "no data"
     assert evidence.reason == (
-        "unknown where it matters: `near` at 1 tick; the longest: `near` from 1 s to 2 s (1 s): "
-        "`d` was no measurement"
+        "unknown where it matters: `near` from 1 s to 2 s (1 s): `d` was no measurement"
+    )
+
+
+def test_of_several_unknown_intervals_the_longest_is_told_with_the_number_of_ticks() -> None:
+    nan = float("nan")
+    log = recorded([FAR, nan, FAR, nan, nan, FAR], [STILL] * 6)
+    assert audited(EVENTUALLY, log).reason.startswith(
+        "unknown where it matters: `near` at 3 ticks; the longest: `near` from 3 s to 5 s (2 s): "
     )
 
 
@@ -128,8 +135,8 @@ def test_a_stale_response_is_no_data_and_never_a_pass() -> None:
     evidence = audited(sentence, recorded([FAR] * 5 + [NEAR], speeds))
     assert evidence.verdict == "no data"
     assert evidence.reason.startswith(
-        "undecided at 1 tick, because inputs are unknown: `still` at 2 ticks; the longest: `still` "
-        "from 4 s to 6 s (2 s): the last sample of `v` was too old; the verdict depends on "
+        "undecided at 1 tick, because inputs are unknown: `still` from 4 s to 6 s (2 s): the last "
+        "sample of `v` was too old; the verdict depends on where the ticks begin: "
     )
 
 
