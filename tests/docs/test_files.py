@@ -235,7 +235,7 @@ def settings_of(name: str, table: Table) -> object:
     Path("fretc.toml").write_text(tomli_w.dumps(table), "utf-8")
     found = settings.settings(".")
     assert not isinstance(found, Diagnostic), found
-    return found.parents, found.accept, found.project
+    return found.parents, found.accept, found.project, found.viewer
 
 
 def value_of(cell: str) -> Any:
