@@ -62,8 +62,8 @@ class SectionRuns:
     """Sentences about omitted content and where to find it."""
     is_short: bool
     """Whether formulas, propositions and artefacts are left out."""
-    repeated: frozenset[str]
-    """The reasons of the requirement that stand above the details of their runs again."""
+    repeated: frozenset[int]
+    """Indices of the reasons of the requirement that the details of their runs give again."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -248,15 +248,15 @@ def _section_runs(
     )
 
 
-def _repeated(view: RequirementView, open_: Container[str]) -> Iterator[str]:
-    """The reasons that the details say again; none if a run that is not satisfied has no details.
+def _repeated(view: RequirementView, open_: Container[str]) -> Iterator[int]:
+    """Indices of the reasons that the details give again; none if an unsatisfied run has none.
 
     The number of further runs is one of them: these have details, too.
     """
     bad = [result for result in view.results if not _is_good(result)]
     if all(result.anchor in open_ for result in bad):
         starts = ("and ", *(f"{result.run_label}: " for result in bad))
-        yield from (reason for reason in view.reasons if reason.startswith(starts))
+        yield from (i for i, reason in enumerate(view.reasons) if reason.startswith(starts))
 
 
 def _row(result: ResultRow, has_details: bool) -> RunRow:

@@ -143,9 +143,13 @@ def test_a_reason_is_told_once_where_all_unsatisfied_runs_have_details(
     runs = [result(known, word, run=f"{word}.mcap", reason="why") for word in verdicts]
     build = report_of(known, tmp_path, *runs)
     (section,) = selection(build).by_anchor.values()
-    assert section.repeated == {"violated: violated, why", "inconclusive: inconclusive, why"}
     (view,) = whole(build).requirements
-    assert {*view.reasons} - section.repeated == {"it holds in 1 of 3 runs"}
+    assert view.reasons == (
+        "violated: violated, why",
+        "inconclusive: inconclusive, why",
+        "it holds in 1 of 3 runs",
+    )
+    assert section.repeated == {0, 1}
     monkeypatch.setattr(choosing, "DETAILED", 1)
     (section,) = selection(build).by_anchor.values()
     assert section.repeated == frozenset()
