@@ -220,7 +220,7 @@ def conflicts(
 
 
 def _perhaps_larger(conflict: Conflict) -> Conflict:
-    return altered(conflict, because=f"{conflict.because}; a subset may already conflict")
+    return altered(conflict, because=f"{conflict.because}; perhaps fewer of them conflict already")
 
 
 @dataclass(slots=True)

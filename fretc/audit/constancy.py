@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from fretc.audit.evidence.schema import Result
 from fretc.audit.measurements.tallies import NOTHING, PropositionTally
+from fretc.audit.measurements.unknown_inputs import without_brackets
 from fretish.bindings.declarations import Declarations
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -63,7 +64,7 @@ def never_changed(
         yield diagnostic(
             "never_changed",
             declarations.propositions[name].span,
-            name=name,
+            name=without_brackets(name),
             runs=runs,
             values=_always(total),
         )

@@ -20,7 +20,7 @@ from fretc.audit.measurements.situations import Near, nowhere_known, situation_t
 from fretc.audit.measurements.states import states
 from fretc.audit.measurements.tallies import tally
 from fretc.audit.measurements.trials import Count, Trials
-from fretc.audit.measurements.unknown_inputs import unknown_inputs
+from fretc.audit.measurements.unknown_inputs import unknown_inputs, without_brackets
 from fretc.audit.measurements.violations import DemandText, violations
 from fretc.audit.phases.by_shift import Phases, phases
 from fretc.logs import log_diagnostics
@@ -163,7 +163,8 @@ def _phased(evidence: RunResult, phases: Phases | None) -> RunResult:
         return evidence
     probabilistic = evidence.trials is not None
     assert probabilistic or phases.verdict == evidence.verdict, "two verdicts at one phase"
-    addition = f"; {'this run alone ' if probabilistic else ''}{phases.text}" if phases.text else ""
+    alone = "in this run alone, " if probabilistic else ""
+    addition = f"; {alone}{phases.text}" if phases.text else ""
     return replace(evidence, phases=phases, reason=f"{evidence.reason}{addition}")
 
 
@@ -356,21 +357,20 @@ def _unknown(evidence: RunResult, recording: Recording) -> str:
         return "no whole tick of the clock lies within the log"
     if not runs:
         return f"unknown where it matters{_of_whom(evidence)}"
-    return f"unknown at {_times(ticks, 'tick')}, first at tick {runs[0][0]}"
+    return f"undecided at {_times(ticks, 'tick')}, because inputs are unknown{_of_whom(evidence)}"
 
 
 def _of_whom(evidence: RunResult) -> str:
     """The propositions that were unknown at some tick."""
     parts = [
-        f"`{name}` at {_times(tally.unknown, 'tick')}"
+        f"`{without_brackets(name)}` at {_times(tally.unknown, 'tick')}"
         for name, tally in evidence.propositions.items()
         if tally.unknown
     ]
-    longest = max(
-        evidence.unknown_inputs, key=lambda one: one.last_tick - one.first_tick, default=None
-    )
-    when = f"; the longest: {longest.in_words(evidence.clock)}" if longest else ""
-    return f": {', '.join(parts)}{when}" if parts else ""
+    intervals = sorted(evidence.unknown_inputs, key=lambda one: one.first_tick - one.last_tick)
+    longest = [one.in_words(evidence.clock) for one in intervals[:1]]
+    several = [", ".join(parts), *(f"the longest: {one}" for one in longest)]
+    return f": {'; '.join(longest if len(intervals) == 1 else several)}" if parts else ""
 
 
 def _latency(evidence: RunResult) -> str:

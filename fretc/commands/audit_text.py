@@ -210,7 +210,7 @@ def _violation(result: Result, violation: Violation) -> Iterator[str]:
         f"{until if end > first else ''}"
         f"{f'; the longest of {many:,} stretches' if many > 1 else ''}"
     )
-    known = f"; {values(result, violation)}" if violation.values else ""
+    known = f"; recorded: {values(result, violation)}" if violation.values else ""
     if violation.missing or known:
         yield f"demanded: {violation.missing}{known}"
     for threshold in result.thresholds:

@@ -62,7 +62,8 @@ def _say_next_commands(folder: str, requirements: Path, log: str | None) -> None
 
     option = "" if folder == "." else f" --requirements {quote(str(requirements))}"
     log_argument = "LOG" if log is None else shell_word(log)
-    print_status(visible(f"next: `fretc check{option}` reports what is wrong or missing"))
+    print_status(visible(f"next: replace each `To do` in {requirements}"))
+    print_status(visible(f"next: `fretc check{option}` reports mistakes"))
     print_status(
         visible(f"next: `fretc audit {log_argument}{option}` checks a log against the requirements")
     )

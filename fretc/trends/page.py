@@ -24,6 +24,7 @@ from fretish.diagnostics.status_symbols import StatusSymbol
 _MOST_RED, _MOST = 500, 150
 """The most rows of a list; the omitted ones are counted, with their requirements."""
 _MOST_CHARTS = 24
+_PAIRS = "pairs of requirement and scenario"
 _FOLDED = 12
 """Above this number of rows a list is folded, unless it is red."""
 
@@ -135,16 +136,22 @@ def _mark(trends: Trends) -> dict[str, Any]:
     if trends.is_worse:
         return {**asdict(signs.BAD), "word": "worse"}
     if not trends.is_comparable:
-        return {**asdict(signs.UNKNOWN), "word": "not all can be compared"}
+        word = "some are undecided now" if trends.lost else "not all can be compared"
+        return {**asdict(signs.UNKNOWN), "word": word}
+    if trends.of(VerdictChange.STILL):
+        return {**asdict(signs.OPEN), "word": "nothing is worse, and some are still violated"}
     return {**asdict(signs.GOOD), "word": "nothing is worse"}
 
 
 def _headline(trends: Trends) -> str:
+    still = trends.of(VerdictChange.STILL)
+    violated = len({item.requirement for item in still})
+    scenarios = phrases.times(len({item.scenario for item in still}), "scenario")
     counts = (
         (len(trends.of(*RED)), "new violation", ""),
         (len(trends.with_finding(ComparisonFinding.REGRESSED)), "regression", ""),
-        (len(trends.of(VerdictChange.STILL)), "requirement still violated in a scenario",
-         "requirements still violated in scenarios"),
+        (violated, f"requirement still violated in {scenarios}",
+         f"requirements still violated in {scenarios}"),
         (len(trends.lost), "verdict undecided now", "verdicts undecided now"),
         (len(trends.of(VerdictChange.FIXED)), "fixed", "fixed"),
     )  # fmt: skip
@@ -161,8 +168,10 @@ def _facts(trends: Trends) -> list[str]:
     return [
         f"Newest round: {phrases.place(newest.name)} ({about}).",
         f"{phrases.times(len(trends.rounds), 'round')}, {phrases.times(trends.runs, 'run')}, "
-        f"{phrases.times(len(trends.sentences), 'requirement')}; {phrases.whole(steady)} shown as "
-        f"before, {phrases.whole(never)} never shown.",
+        f"{phrases.times(len(trends.sentences), 'requirement')}.",
+        f"Of {phrases.times(len(trends.items), 'pair of requirement and scenario', _PAIRS)}, "
+        f"{phrases.whole(steady)} {'is' if steady == 1 else 'are'} shown as before, "
+        f"{phrases.whole(never)} {'was' if never == 1 else 'were'} never shown.",
         *(f"Newest round: {in_words(selection)}." for selection in newest.selections),
         *([f"{trends.order[:1].upper()}{trends.order[1:]}."] if len(trends.rounds) > 1 else []),
     ]

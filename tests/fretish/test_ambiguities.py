@@ -37,7 +37,7 @@ def test_a_condition_that_triggers_where_it_becomes_true() -> None:
         "   | when too_close & moving the sw shall immediately satisfy stopped\n"
         "   | ^^^^^^^^^^^^^^^^^^^^^^^\n"
         "help: write `whenever too_close & moving` to trigger at every tick at which it is "
-        "true, else `upon too_close & moving`"
+        "true, or `upon too_close & moving` to keep this meaning"
     )
 
 

@@ -31,6 +31,11 @@ _WORDS: Mapping[str, str] = {
 }
 
 
+def without_brackets(name: str) -> str:
+    """The name of a proposition for a reader: that of a comparison is in brackets."""
+    return name[1:-1] if name.startswith("(") and name.endswith(")") else name
+
+
 class UnknownInput(TickInterval, frozen=True):
     """An interval of ticks at which a proposition was unknown."""
 
@@ -49,7 +54,7 @@ class UnknownInput(TickInterval, frozen=True):
         """
         when = interval_words(self.first, self.last, clock)
         why = _WORDS[self.cause].format(self.signal) if self.cause else ""
-        return f"`{self.proposition}` {when}{f': {why}' if why else ''}"
+        return f"`{without_brackets(self.proposition)}` {when}{f': {why}' if why else ''}"
 
 
 def unknown_inputs(

@@ -104,12 +104,13 @@ class Phases:
         if self.nearest is None:
             return ""
         shares = [
-            f"{'not computed' if verdict is None else verdict} at {_share(length, self.period)}"
+            f"{'not computed' if verdict is None else verdict} in {_share(length, self.period)}"
             for verdict, length in self.verdicts.items()
         ]
+        cases = ", ".join([f"{shares[0]} of cases", *shares[1:]])
         far = duration(self.nearest / 1e9)
-        near = f"the nearest change is {far} away" if self.exact else f"no change within {far}"
-        return f"by phase of the ticks {', '.join(shares)}, {near}"
+        near = f"a shift of {far} changes it" if self.exact else f"no change within {far}"
+        return f"the verdict depends on where the ticks begin: {cases}; {near}"
 
 
 def _apart(one: int, other: int, period: int) -> int:

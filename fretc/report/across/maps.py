@@ -105,15 +105,16 @@ def _text(
 ) -> str:
     (x, y), (u, v) = lines[0][0], lines[-1][-1]
     parts = [
-        f"The path of the robot from ({x:g}, {y:g}) to ({u:g}, {v:g}) in metres, within "
-        f"{phrases.value(float(way.error), 'm')}.",
+        f"The path of the robot from ({x:g}, {y:g}) to ({u:g}, {v:g}) in metres, drawn to "
+        f"within {phrases.value(float(way.error), 'm')}.",
         f"It has {phrases.times(len(lines), 'part')}: between them the position is unknown."
         if len(lines) > 1
         else "",
         f"{phrases.times(way.lines_left_out, 'short part')} left out."
         if way.lines_left_out
         else "",
-        f"{phrases.times(violations, 'violation')}, each marked where it began."
+        f"{phrases.times(violations, 'violation')}, marked where "
+        f"{'it' if violations == 1 else 'each'} began."
         if violations and not unplaced
         else "",
         f"{phrases.times(violations, 'violation')}, of which {phrases.whole(unplaced)} began "

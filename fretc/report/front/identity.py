@@ -40,7 +40,7 @@ def identity(
         evidence: None if no run was audited.
     """
     rows = [IdentityRow("Date", (_date(runs),))]
-    rows += [IdentityRow(key, (text,)) for key, text in _labels(runs)]
+    rows += [IdentityRow(f"Label {key}", (text,)) for key, text in _labels(runs)]
     if evidence is not None:
         rows.append(IdentityRow("Evidence", (f"SHA-256 {evidence.sha256}",)))
         rows.append(IdentityRow("Audited by", (f"fretc {evidence.fretc}",)))
@@ -71,7 +71,7 @@ def _labels(runs: Sequence[AuditedFile]) -> Iterator[tuple[str, str]]:
         values = sorted({labels[key] for labels in known if key in labels}, key=natural)
         without = sum(key not in labels for labels in known)
         text = phrases.some(values, _VALUES)
-        yield key, f"{text} (not known of {phrases.times(without, 'run')})" if without else text
+        yield key, f"{text} (not known for {phrases.times(without, 'run')})" if without else text
 
 
 def _exposure(
@@ -87,7 +87,8 @@ def _exposure(
         driven = [metres[column.anchor] for column in columns if column.anchor in metres]
         distance = f", at least {phrases.value(fsum(driven), 'm')}" if driven else ""
         count = phrases.times(len(columns), "run")
-        yield f"{name}: {count}, {duration(seconds)}{distance}"
+        text = f"{count}, {duration(seconds)}{distance}"
+        yield f"{name}: {text}" if parts else text
 
 
 def _distances(runs: Sequence[AuditedFile], evidence: EvidenceSource | None) -> Mapping[str, float]:

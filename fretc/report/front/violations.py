@@ -80,9 +80,9 @@ def headline(views: Sequence[RequirementView], runs: int, gravity: Mapping[str, 
 def _where(broken: int, runs: int, *, several: bool) -> str:
     """The runs with violations, in words; a run need not violate every requirement."""
     if broken < runs:
-        return f", in {number(broken)} of {number(runs)} runs"
+        return f" in {number(broken)} of {number(runs)} runs"
     if runs == 1:
-        return ", in the only run"
+        return " in the only run"
     return f": none of {number(runs)} runs keeps {'all of them' if several else 'it'}"
 
 

@@ -6,7 +6,7 @@ The page states how many unsatisfied runs it leaves out; the evidence file has t
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import islice, zip_longest
 
@@ -62,6 +62,8 @@ class SectionRuns:
     """Sentences about omitted content and where to find it."""
     is_short: bool
     """Whether formulas, propositions and artefacts are left out."""
+    repeated: frozenset[int]
+    """Indices of the reasons of the requirement that the details of their runs give again."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -242,7 +244,19 @@ def _section_runs(
         folded=tuple(foldable[result.anchor] for result in folded),
         left_out=tuple(_left_out(view, rows, details, folded)),
         is_short=compact and requirements > _WHOLE,
+        repeated=frozenset(_repeated(view, open_)),
     )
+
+
+def _repeated(view: RequirementView, open_: Container[str]) -> Iterator[int]:
+    """Indices of the reasons that the details give again; none if an unsatisfied run has none.
+
+    The number of further runs is one of them: these have details, too.
+    """
+    bad = [result for result in view.results if not _is_good(result)]
+    if all(result.anchor in open_ for result in bad):
+        starts = ("and ", *(f"{result.run_label}: " for result in bad))
+        yield from (i for i, reason in enumerate(view.reasons) if reason.startswith(starts))
 
 
 def _row(result: ResultRow, has_details: bool) -> RunRow:

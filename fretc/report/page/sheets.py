@@ -50,7 +50,9 @@ def _zoom(columns: int) -> str:
 def quoted(text: str) -> str:
     """A CSS string; every character except letters, digits and blanks is escaped.
 
+    A blank ends each escape. It belongs to the escape and is not shown, so that a blank of the text
+    after it is.
     Source: CSS Syntax Level 3, section 4.3.7.
     """
-    safe = (c if c.isascii() and (c.isalnum() or c == " ") else f"\\{ord(c):06x}" for c in text)
+    safe = (c if c.isascii() and (c.isalnum() or c == " ") else f"\\{ord(c):x} " for c in text)
     return f'"{"".join(safe)}"'

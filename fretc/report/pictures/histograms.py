@@ -43,8 +43,8 @@ def exercise(assessment: Assessment) -> str:
     suspect = len(assessment.audits) - len(results)
     parts = [
         phrases.times(len(results), "run"),
-        phrases.times(triggers, "trigger"),
-        f"triggered in {phrases.whole(asked)} of them" if len(results) > 1 else "",
+        phrases.times(triggers, "trigger")
+        + (f" in {phrases.whole(asked)} of them" if len(results) > 1 else ""),
         f"{phrases.whole(answers)} answered" if answers else "",
         f"{phrases.whole(unanswered)} without an answer" if unanswered else "",
         f"{phrases.whole(waiting)} open at the end" if waiting else "",

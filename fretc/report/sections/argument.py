@@ -243,7 +243,8 @@ def _violated(view: RequirementView, violating: Sequence[ResultRow], old: bool) 
     runs = phrases.times(len(view.results), "audited run")
     worst = sorted(violating, key=lambda result: -result.violations_total)[:_NAMED]
     left = len(violating) - len(worst)
-    named = [f"{result.run_file}: {result.reason}" for result in worst]
+    repeated = len({result.run_file for result in worst}) < len(worst)
+    named = [f"{r.run_label if repeated else r.run_file}: {r.reason}" for r in worst]
     more = [f"and {phrases.times(left, 'more run')}"] if left else []
     why = phrases.joined(list(dict.fromkeys(why for each in violating for why in each.suspicions)))
     age = f", before a change ({why})" if old else ""

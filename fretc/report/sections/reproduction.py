@@ -27,7 +27,7 @@ from fretc.logs.storage.log_names import STDIN, name_of, path_of, shell_word
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Inputs
 from fretc.report.model.views import Command, Hash, RequirementView
-from fretc.report.sections.runs import AuditedFile
+from fretc.report.sections.runs import AuditedFile, places
 from fretc.verification.reader import Proofs
 
 
@@ -65,7 +65,7 @@ def _audit(inputs: Inputs, runs: Sequence[AuditedFile]) -> str:
     estimations = inputs.evidence.probabilities if inputs.evidence else ()
     confidence = next((estimation.confidence for estimation in estimations), CONFIDENCE)
     selection = inputs.evidence.selection if inputs.evidence else None
-    logs = " ".join(_log(run.facts.run) for run in runs) if selection is None else ""
+    logs = " ".join(_logs(runs)) if selection is None else ""
     since = selection.since if selection else None
     options = (
         f"--confidence {confidence}" if confidence != CONFIDENCE else "",
@@ -202,9 +202,10 @@ def _command(purpose: str, text: Callable[[], str]) -> Iterator[Command]:
         yield Command(purpose, command)
 
 
-def _log(run: str) -> str:
-    """The path of a run; only the last part of an absolute path."""
-    return STDIN if run == name_of(STDIN) else shell_word(path_of(phrases.place(run)))
+def _logs(runs: Sequence[AuditedFile]) -> Iterator[str]:
+    """The path of each run, as in `places`."""
+    for run, place in places([run.facts.run for run in runs]).items():
+        yield STDIN if run == name_of(STDIN) else shell_word(path_of(place))
 
 
 def _quoted(path: str) -> str:
@@ -238,7 +239,8 @@ def _folder(path: str) -> str:
 
 def _check(runs: Sequence[AuditedFile]) -> str:
     facts = [run.facts for run in runs if run.facts.log and _is_file(run.facts.run)]
-    return check_of((fact.log, phrases.place(path_of(fact.run))) for fact in facts)
+    shown = places([fact.run for fact in facts])
+    return check_of((fact.log, path_of(shown[fact.run])) for fact in facts)
 
 
 def _is_file(run: str) -> bool:
@@ -305,5 +307,6 @@ def manifest(
         )
         if file is not None
     )
-    lines.extend(Hash("run", phrases.place(run.facts.run), run.facts.log) for run in runs)
+    shown = places([run.facts.run for run in runs])
+    lines.extend(Hash("run", shown[run.facts.run], run.facts.log) for run in runs)
     return tuple(line for line in lines if is_sha256(line.sha256))

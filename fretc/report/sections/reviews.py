@@ -70,9 +70,11 @@ def summary(assessments: Sequence[Assessment], book: SignatureBook) -> str:
     if not statuses:
         return "No requirement has been reviewed."
     suspect = sum(status.is_suspect for status in statuses)
-    verb = "stands" if suspect == 1 else "stand"
+    verb = "is" if suspect == 1 else "are"
     stands = (
-        f"; {suspect} of these reviews no longer {verb}" if suspect else ", all reviews are current"
+        f"; {suspect} of these reviews {verb} suspect: the requirement or a result changed since"
+        if suspect
+        else ", all reviews are current"
     )
     reviews = [status.review for status in statuses if status.review is not None]
     unsigned = sum(not of_review(book, review).is_good for review in reviews)

@@ -99,6 +99,19 @@ def inner_paths(logs: Sequence[str]) -> list[list[str]]:
     return [path[shared:] for path in paths]
 
 
+def places(logs: Sequence[str]) -> dict[str, str]:
+    """Each log with its path for a reader, which is independent of the machine.
+
+    Of an absolute path it is the last part, or the part below the common folder of the absolute
+    paths if two of them have the same last part. So a command never names one file for two logs.
+    """
+    absolute = [log for log in dict.fromkeys(logs) if phrases.place(log) != log]
+    names = [phrases.place(log) for log in absolute]
+    if len({*names}) < len(names):
+        names = ["/".join(path) for path in inner_paths(absolute)]
+    return {**{log: log for log in logs}, **dict(zip(absolute, names, strict=True))}
+
+
 def alike(sequences: Sequence[Sequence[str]]) -> int:
     """The length of the common prefix of sequences."""
     return sum(1 for _ in takewhile(lambda same: len({*same}) == 1, zip(*sequences, strict=False)))

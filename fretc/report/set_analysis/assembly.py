@@ -132,7 +132,10 @@ class _Views:
 
     def members(self, ids: Sequence[str]) -> tuple[SetMember, ...]:
         known = self._document.requirements
-        return tuple(SetMember(id, self._anchors.get(id, ""), known[id].sentence) for id in ids)
+        return tuple(
+            SetMember(id, self._anchors.get(id, ""), known[id].sentence)
+            for id in sorted(ids, key=natural)
+        )
 
     def play(self, ticks: Sequence[Mapping[str, object]], loop: int | None) -> Play:
         """The view of a run in columns; `loop` is a tick."""

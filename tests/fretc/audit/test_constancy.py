@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 from fretc.audit.constancy import PropositionTotal, never_changed, tallies_of, totals
 from fretc.audit.measurements.tallies import PropositionTally
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -24,6 +26,14 @@ def test_what_changed_in_none_is_told_once_with_what_it_was() -> None:
     ) == [
         "`low` never changed in any of 3 logs: it was true at 5 ticks, false at 1 tick, "
         "unknown at 1 tick"
+    ]
+
+
+def test_a_comparison_is_named_as_the_sentence_writes_it() -> None:
+    total = {"(battery < 20)": PropositionTotal(PropositionTally(5, 0, 0, 0), 1)}
+    known = replace(X, propositions={"(battery < 20)": X.propositions["low"]})
+    assert [finding.message for finding in never_changed(total, known)] == [
+        "`battery < 20` never changed in the log: it was true at 5 ticks"
     ]
 
 

@@ -78,8 +78,8 @@ def test_a_demand_that_is_answered_is_satisfied_with_its_latency() -> None:
     evidence = audited(EVENTUALLY, recorded([FAR, NEAR, FAR, FAR], [MOVING, MOVING, MOVING, STILL]))
     assert (evidence.verdict, evidence.latencies) == ("satisfied", (2.0,))
     assert evidence.reason == (
-        "held, 1 trigger, answered after 2 s; by phase of the ticks "
-        "satisfied at less than 1 %, inconclusive at 99 %, the nearest change is 1 ns away"
+        "held, 1 trigger, answered after 2 s; the verdict depends on where the ticks begin: "
+        "satisfied in less than 1 % of cases, inconclusive in 99 %; a shift of 1 ns changes it"
     )
     assert [moment.seconds for moment in evidence.triggers] == [1.0]
 
@@ -117,8 +117,15 @@ def test_an_unknown_trigger_is_no_data() -> None:
     evidence = audited(EVENTUALLY, recorded([FAR, float("nan"), FAR], [MOVING, MOVING, STILL]))
     assert evidence.verdict == "no data"
     assert evidence.reason == (
-        "unknown where it matters: `near` at 1 tick; the longest: `near` from 1 s to 2 s (1 s): "
-        "`d` was no measurement"
+        "unknown where it matters: `near` from 1 s to 2 s (1 s): `d` was no measurement"
+    )
+
+
+def test_of_several_unknown_intervals_the_longest_is_told_with_the_number_of_ticks() -> None:
+    nan = float("nan")
+    log = recorded([FAR, nan, FAR, nan, nan, FAR], [STILL] * 6)
+    assert audited(EVENTUALLY, log).reason.startswith(
+        "unknown where it matters: `near` at 3 ticks; the longest: `near` from 3 s to 5 s (2 s): "
     )
 
 
@@ -127,7 +134,10 @@ def test_a_stale_response_is_no_data_and_never_a_pass() -> None:
     sentence = "whenever near the rover shall immediately satisfy still"
     evidence = audited(sentence, recorded([FAR] * 5 + [NEAR], speeds))
     assert evidence.verdict == "no data"
-    assert evidence.reason.startswith("unknown at 1 tick, first at tick 5; by phase")
+    assert evidence.reason.startswith(
+        "undecided at 1 tick, because inputs are unknown: `still` from 4 s to 6 s (2 s): the last "
+        "sample of `v` was too old; the verdict depends on where the ticks begin: "
+    )
 
 
 def test_a_damaged_log_shows_no_pass_but_a_violation() -> None:

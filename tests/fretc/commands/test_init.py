@@ -60,7 +60,8 @@ def test_a_project_without_a_log_has_no_mistake(fretc: Fretc) -> None:
         "wrote requirements/r1.fret\nwrote requirements/bindings.toml\n"
         "wrote requirements/hazards.toml\n"
         "wrote requirements/fretc.toml\n"
-        "next: `fretc check` reports what is wrong or missing\n"
+        "next: replace each `To do` in requirements\n"
+        "next: `fretc check` reports mistakes\n"
         "next: `fretc audit LOG` checks a log against the requirements\n"
     )
     run = fretc("check")

@@ -61,6 +61,25 @@ def test_each_change_has_its_list_with_its_requirements() -> None:
     assert page.count("<figure ") >= 2
 
 
+def test_a_requirement_that_several_scenarios_violate_is_counted_once() -> None:
+    sources = []
+    for night in range(2):
+        results = [
+            judged(f"{night}-{scenario}.mcap", verdict, id, night=night, scenario=scenario)
+            for scenario in ("door", "hall")
+            for id, verdict in (("R1", "violated"), ("R2", "satisfied"))
+        ]
+        sources.append(EvidenceFile(f"{night}.json", SHA, document(results)))
+    found = trends_of(sources)
+    assert isinstance(found, Trends)
+    page = html(found)
+    assert "<title>Trends: 1 requirement still violated in 2 scenarios.</title>" in page
+    assert "nothing is worse, and some are still violated" in page
+    assert (
+        "Of 4 pairs of requirement and scenario, 2 are shown as before, 0 were never shown." in page
+    )
+
+
 def test_it_is_the_same_again() -> None:
     assert html(nights()) == html(nights())
 

@@ -48,8 +48,9 @@ def test_a_verdict_that_depends_on_the_phase_is_said_with_its_shares_and_a_warni
     assert run.status == 1
     assert run.out.startswith(
         "run.mcap\n"
-        "  ✘ R1  violated      from 0.8 s to 0.9 s (100 ms), triggered at 0.5 s; by phase of the "
-        "ticks violated at 12 %, satisfied at 88 %, the nearest change is 1 ns away\n"
+        "  ✘ R1  violated      from 0.8 s to 0.9 s (100 ms), triggered at 0.5 s; the "
+        "verdict depends on where the ticks begin: violated in 12 % of cases, satisfied in 88 %; "
+        "a shift of 1 ns changes it\n"
     )
     assert (
         "F425 warning: whether R1 is violated depends on where the grid of ticks begins\n"
@@ -89,14 +90,14 @@ def test_a_satisfied_run_that_other_phases_violate_says_so(robot: Fretc) -> None
     project(bindings=BINDINGS.replace("[clock]", '[clock]\nphase = "15 ms"'))
     run = robot("audit", "run.mcap")
     assert run.status == 0
-    assert "satisfied at 88 %, violated at 12 %, the nearest change is 3 ms away" in run.out
+    assert "satisfied in 88 % of cases, violated in 12 %; a shift of 3 ms changes it" in run.out
     assert "F425 warning" in run.err
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("form", ["junit", "sarif", "github", "json"])
 def test_every_form_says_it(robot: Fretc, form: str) -> None:
-    assert "violated at 12 %" in robot("audit", "run.mcap", "--format", form).out.replace(
+    assert "violated in 12 %" in robot("audit", "run.mcap", "--format", form).out.replace(
         "%25", "%"
     )
 
@@ -104,7 +105,7 @@ def test_every_form_says_it(robot: Fretc, form: str) -> None:
 def test_the_report_says_it(robot: Fretc) -> None:
     robot("audit", "run.mcap")
     robot("report", "--json", "report.json")
-    assert "violated at 12 %" in Path("report.json").read_text("utf-8")
+    assert "violated in 12 %" in Path("report.json").read_text("utf-8")
 
 
 def test_both_ways_to_run_monitors_give_the_same_evidence(robot: Fretc) -> None:
@@ -119,8 +120,8 @@ def test_a_check_proposes_the_middle_of_the_longest_stretch(robot: Fretc) -> Non
     run = robot("bind", "--check", "run.mcap")
     assert run.out.endswith(
         "? phase of the ticks: verdicts depend on it\n"
-        "  run.mcap  R1 violated, by phase of the ticks violated at 12 %, satisfied at 88 %, the "
-        "nearest change is 1 ns away\n"
+        "  run.mcap  R1 violated, the verdict depends on where the ticks begin: violated in 12 % "
+        "of cases, satisfied in 88 %; a shift of 1 ns changes it\n"
     )
     assert (
         "F427 note: at phase 60 ms no verdict changes within 40 ms, at the declared one (0 s) one "
@@ -144,8 +145,8 @@ def test_of_a_requirement_with_a_probability_the_run_alone_is_told(robot: Fretc)
     project(WITHIN.replace("shall", "shall with probability >= 0.9"))
     run = robot("audit", "run.mcap")
     assert (
-        "inconclusive  0 of 1 trigger answered, 1 failed: judged over all runs; this run alone "
-        "by phase of the ticks violated at 12 %, satisfied at 88 %"
+        "inconclusive  0 of 1 trigger answered, 1 failed: judged over all runs; in this run "
+        "alone, the verdict depends on where the ticks begin: violated in 12 % of cases"
     ) in run.out
 
 
@@ -156,7 +157,7 @@ def test_what_is_open_at_the_end_is_judged_as_the_clock_says_at_each_phase(robot
     ))  # fmt: skip
     run = robot("audit", "run.mcap")
     assert run.status == 1
-    assert "by phase" not in run.out
+    assert "where the ticks begin" not in run.out
 
 
 # The longest stretch

@@ -62,7 +62,8 @@ def test_the_page_has_the_map_with_links_and_says_it_in_words(tmp_path: Path) ->
     assert build.report is not None
     (drawn,) = build.report.across.maps
     assert drawn.text == (
-        "The path of the robot from (0, 0) to (6, 3) in metres, within 0.01 m. It has 2 parts: "
-        "between them the position is unknown. 2 violations, each marked where it began."
+        "The path of the robot from (0, 0) to (6, 3) in metres, drawn to within "
+        "0.01 m. It has 2 parts: between them the position is unknown. 2 violations, marked where "
+        "each began."
     )
     assert '<a href="#picture-result-R1.1.1"><title>R1: violated, at 1 s</title>' in as_html(build)

@@ -192,3 +192,11 @@ def test_on_paper_nothing_is_cut(opened: Open) -> None:
     printed = page.pdf(prefer_css_page_size=True)
     assert printed.startswith(b"%PDF-")
     assert printed.count(b"/Type /Page\n") > 5
+
+
+def test_on_paper_no_chapter_is_a_heading_alone(opened: Open) -> None:
+    page = opened(665, 979)
+    page.emulate_media(media="print")
+    assert page.locator("#means table .hash:visible").count() > 3
+    assert page.locator("#runs dt:visible, #runs tbody tr:visible").count() > 3
+    assert page.locator("#not-shown table:visible").count() > 0

@@ -10,6 +10,8 @@ from pathlib import Path
 import pytest
 
 from compiler.files.templating import template_root
+from fretc.report.front import front
+from fretc.report.model.front import Figure, FigureLine
 from tests.effort import FULL
 from tests.fretc.report.cases import (
     BINDINGS,
@@ -305,6 +307,16 @@ def test_backticks_set_code_where_they_come_in_pairs(tmp_path: Path) -> None:
     report = report_of(known, tmp_path)
     assert "<code>eventually</code>" in _everywhere(tmp_path, "any")
     assert "near`" in Page(as_html(report)).text
+
+
+def test_a_command_in_a_figure_of_the_first_screen_is_code(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lines = (FigureLine("only need `fretc analyze`", (), 0),)
+    figure = Figure("changed", 1, "changed", "", "changes", lines)
+    monkeypatch.setattr(front, "_changed", lambda *_: figure)
+    page = as_html(report_of(project(tmp_path), tmp_path))
+    assert "<p>only need <code>fretc analyze</code></p>" in page
 
 
 def test_right_to_left_text_is_isolated(tmp_path: Path) -> None:

@@ -133,3 +133,23 @@ def test_a_run_in_which_unknown_values_decided_is_drawn_before_runs_with_open_de
     ]
     details = selection(report_of(known, tmp_path, *runs)).by_anchor["req-R1"].details
     assert {each.run_file: len(each.timelines) for each in details} == {"a.mcap": 0, "b.mcap": 1}
+
+
+def test_a_reason_is_told_once_where_all_unsatisfied_runs_have_details(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    known = small_project(tmp_path)
+    verdicts = ("satisfied", "inconclusive", "violated")
+    runs = [result(known, word, run=f"{word}.mcap", reason="why") for word in verdicts]
+    build = report_of(known, tmp_path, *runs)
+    (section,) = selection(build).by_anchor.values()
+    (view,) = whole(build).requirements
+    assert view.reasons == (
+        "violated: violated, why",
+        "inconclusive: inconclusive, why",
+        "it holds in 1 of 3 runs",
+    )
+    assert section.repeated == {0, 1}
+    monkeypatch.setattr(choosing, "DETAILED", 1)
+    (section,) = selection(build).by_anchor.values()
+    assert section.repeated == frozenset()

@@ -37,6 +37,19 @@ def test_the_commands_can_be_typed_as_they_stand(
     ]
 
 
+def test_logs_of_the_same_name_in_several_folders_are_told_apart(tmp_path: Path) -> None:
+    known = project(tmp_path)
+    runs = [result(known, "satisfied", run=f"/data/{day}/a.mcap") for day in ("mon", "tue")]
+    content = as_json(report_of(known, tmp_path, *runs))
+    texts = [command["text"] for command in content["commands"]]
+    assert texts[1] == (
+        f"printf '%s\\n' '{LOG}  mon/a.mcap' '{LOG}  tue/a.mcap' | sha256sum --check"
+    )
+    assert texts[2].startswith("fretc audit mon/a.mcap tue/a.mcap --requirements ")
+    names = [line["name"] for line in content["manifest"] if line["kind"] == "run"]
+    assert names == ["mon/a.mcap", "tue/a.mcap"]
+
+
 def test_the_manifest_has_the_hash_of_everything(tmp_path: Path) -> None:
     known = project(tmp_path)
     manifest = content_of(known, tmp_path, result(known, "satisfied"))["manifest"]

@@ -112,6 +112,10 @@ def test_what_changed_since_the_review_makes_the_requirement_suspect(tmp_path: P
     assert (group["requirements"], group["links"]) == ([["R1", "req-R1"]], 2)
     assert f"Changed since the review: R1: {text}." in report["overall"]["sentences"]
     assert report["overall"]["mark"]["word"] == "nothing shown"
+    assert (
+        "1 of these reviews is suspect: the requirement or a result changed since"
+        in report["reviewed"]
+    )
 
 
 def test_a_run_after_the_review_is_reported_and_makes_nothing_suspect(tmp_path: Path) -> None:
