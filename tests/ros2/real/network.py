@@ -9,6 +9,7 @@ import json
 import re
 import signal
 import subprocess
+import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
@@ -17,7 +18,6 @@ from typing import Any
 
 from tests import dds
 from tests.programs import DEBIANS_PATH
-from tests.ros1 import until
 from tests.ros2.real.environment import python
 
 PATIENCE = 60.0
@@ -65,14 +65,11 @@ class Robot:
         Raises:
             AssertionError: it has not come.
         """
-        states: list[dict[str, Any]] = []
-
-        def come() -> object:
-            states[:] = [self.ask()]
-            return holds(states[0])
-
-        until(what, come, PATIENCE)
-        return states[0]
+        end = time.monotonic() + PATIENCE
+        while not holds(state := self.ask()):
+            assert time.monotonic() < end, f"not within {PATIENCE} s: {what}: {state}"
+            time.sleep(0.05)
+        return state
 
     def change(self, *transitions: str) -> list[bool]:
         """Ask the monitor for transitions of a managed node; whether it has made each."""

@@ -2,9 +2,10 @@
 
 It runs where rclpy is installed, without fretc. Each line of standard input is answered by
 `Robot.state`, in JSON: `go` begins; `away` puts it far from the wall; `stuck` and `free`: its
-brakes; `plans` and `rests`: its planner; `hear` forgets what was heard so far; `second` speaks on
-the topic of stops, too; `lossy` publishes odometry as best effort; `deaf` ends without a word; a
-transition of a managed node is asked for by `change NODE TRANSITION`, as `ros2 lifecycle set` does.
+brakes; `plans` and `rests`: its planner, which is `lossy` as best effort, else `reliable`; `hear`
+forgets what was heard so far; `second` publishes on the topic of stops, too, until it is `alone`;
+`change NODE TRANSITION` asks for a transition of a managed node, as `ros2 lifecycle set` does;
+`try NODE TRANSITION` does not wait for the answer.
 """
 
 from __future__ import annotations
@@ -27,6 +28,8 @@ from sensor_msgs.msg import LaserScan  # type: ignore[import-not-found]
 from std_msgs.msg import Bool, String  # type: ignore[import-not-found]
 
 BEAMS, PERIOD, FAR, WALL, SPEED = 180, 0.05, 0.4, 0.01, 0.3
+PATIENCE = 60.0
+"""Seconds for an answer that takes a fraction of one, on a machine that may be busy."""
 FRONT = 0.306
 """From the lidar to the bumper, m."""
 
@@ -106,21 +109,22 @@ class Robot:
                 self.node.count_publishers("/cmd_vel_filtered"),
             ],
             "monitors": self.node.count_publishers("/gwendolen_control"),
+            "managed": self.node.count_services("/r1_monitor/change_state"),
         }
 
-    def change(self, name: str, transition: str) -> bool:
+    def change(self, name: str, transition: str, *, waits: bool = True) -> bool:
         """Ask a managed node for it; whether it has done it."""
         client = self.node.create_client(ChangeState, f"/{name}/change_state")
-        client.wait_for_service()
+        assert client.wait_for_service(PATIENCE), name
         request = ChangeState.Request()
         request.transition.id = getattr(Transition, f"TRANSITION_{transition.upper()}")
         answered = threading.Event()
         future = client.call_async(request)
         future.add_done_callback(lambda _: answered.set())
-        answered.wait()
-        success: bool = future.result().success
-        self.node.destroy_client(client)
-        return success
+        if waits:
+            assert answered.wait(PATIENCE), transition
+            self.node.destroy_client(client)
+        return waits and future.result().success
 
     def obey(self, word: str, *more: str) -> bool:
         """Do what is asked; False: it was refused."""
@@ -132,6 +136,10 @@ class Robot:
             self.stuck = word == "stuck"
         elif word in ("plans", "rests"):
             self.plans = word == "plans"
+        elif word in ("lossy", "reliable"):
+            self.node.destroy_publisher(self.commands)
+            qos = qos_profile_sensor_data if word == "lossy" else 10
+            self.commands = self.node.create_publisher(Twist, "/cmd_vel", qos)
         elif word == "hear":
             self.wheels, self.stops = [], []
         elif word == "second":
@@ -139,8 +147,8 @@ class Robot:
         elif word == "alone":
             second, self.second = self.second, None
             self.node.destroy_publisher(second)
-        elif word == "change":
-            return self.change(*more)
+        elif word in ("change", "try"):
+            return self.change(*more, waits=word == "change")
         return True
 
 

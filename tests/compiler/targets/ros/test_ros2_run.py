@@ -7,8 +7,10 @@ says of the recording afterwards are one.
 from __future__ import annotations
 
 import json
+import random
 import signal
 import subprocess
+import time
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -17,11 +19,12 @@ import pytest
 
 from compiler.files.text_files import write as deliver
 from tests.command import Fretc
+from tests.effort import FULL
 from tests.fretc.watch.watched import Watched
 from tests.programs import needs_package
 from tests.ros1 import until
 from tests.ros2.emitted import write
-from tests.ros2.real.network import PATIENCE, Network, network
+from tests.ros2.real.network import NODE, PATIENCE, Network, Program, network
 
 ROOT = Path(__file__).parents[4]
 NEAR = 0.05
@@ -139,3 +142,126 @@ def test_node_watch_and_audit_say_one_thing(here: Network, tmp_path: Path, fretc
     assert len(edges) == 2
     broken = audit["EDGE"]["violations"][0]["start_ns"]
     assert last(lines, "EDGE")["violated_ns"] == last(live, "EDGE")["violated_ns"] == broken
+
+
+# How nodes begin and end -------------------------------------------------------------------------
+
+
+class Driving:
+    """A robot that drives, with the nodes of R1; each can be ended, and is started again."""
+
+    def __init__(self, here: Network, package: Path) -> None:
+        self._here, self._package = here, package
+        self.robot = here.robot()
+        self.gate, self.node = here.interceptor(package), here.monitor(package)
+        self.robot.ask("go")
+        self.activate()
+
+    def activate(self) -> None:
+        """Let the node lead, and the robot drive."""
+        assert self.robot.change("configure", "activate") == [True, True]
+        self.drives()
+
+    def drives(self) -> None:
+        """It is put far away, again and again, until it drives."""
+
+        def holds(state: dict[str, Any]) -> bool:
+            if state["clearance"] < 2 * NEAR:
+                self.robot.ask("away")
+            return bool(state["wheels"]) and state["wheels"][-1] > 0 and state["speed"] > 0
+
+        self.robot.until("it drives", holds)
+
+    def restart(self, program: Program) -> None:
+        """Start one again, when it is known that it has ended, until the robot drives."""
+        if program is self.node:
+            self.robot.until("it is gone", lambda s: s["monitors"] == s["managed"] == 0)
+            self.node = self._here.monitor(self._package)
+            self.activate()
+        else:
+            self.robot.until("it is gone", lambda state: state["gates"] == [0, 0])
+            self.gate = self._here.interceptor(self._package)
+            self.drives()
+
+
+@pytest.fixture
+def driving(here: Network, package: Path) -> Driving:
+    return Driving(here, package)
+
+
+def test_only_an_active_node_lets_the_robot_go(driving: Driving) -> None:
+    robot, node = driving.robot, driving.node
+    robot.ask("hear")
+    assert robot.change("deactivate") == [True]
+    robot.stands()
+    stops = robot.until("a stop comes", lambda state: True in state["stops"])["stops"]
+    assert stops[-1] is True
+    robot.ask(f"try {NODE} deactivate")  # its state does not have that
+    until("it is refused", lambda: "a transition was refused" in node.said, PATIENCE)
+    assert robot.change("cleanup") == [True]
+    assert robot.ask()["speed"] == 0
+    driving.activate()
+    robot.ask("hear")
+    assert robot.change("active_shutdown") == [True]
+    robot.stands()
+    assert robot.until("a stop comes", lambda state: state["stops"])["stops"][-1] is True
+    assert node.end(signal.SIGTERM) == 0
+
+
+def test_what_cannot_be_trusted_or_heard_stops_the_robot_and_is_told(driving: Driving) -> None:
+    robot, gate = driving.robot, driving.gate
+    robot.ask("second")
+    robot.stands()
+    crowd = "interceptor.py: /gwendolen_control has several publishers: the robot stands until"
+    until("it is told", lambda: crowd in gate.said, PATIENCE)
+    robot.ask("alone")
+    driving.drives()
+    robot.ask("lossy")  # a planner as best effort, and a reliable subscription
+    robot.stands()
+    told = "topic '/cmd_vel', offering incompatible QoS."
+    until("it is told", lambda: told in gate.said, PATIENCE)
+    robot.ask("reliable")
+    driving.drives()
+    robot.ask("rests")
+    robot.stands()
+
+
+ENDS = (
+    ("node", signal.SIGINT),
+    ("gate", signal.SIGTERM),
+    ("node", signal.SIGKILL),
+    ("gate", signal.SIGKILL),
+    ("node", signal.SIGTERM),
+    ("gate", signal.SIGINT),
+)
+
+
+def moments(count: int) -> list[tuple[str, signal.Signals, float]]:
+    """Which program gets which signal, and how many seconds after the robot has begun to drive."""
+    drawn = random.Random(1)
+    ends = [ENDS[i % len(ENDS)] for i in range(count)]
+    return [(*end, drawn.uniform(0.0, 1.5)) for end in ends]
+
+
+def test_whenever_a_node_is_ended_the_last_that_the_wheels_get_is_zero(driving: Driving) -> None:
+    """The interceptor gives it where the monitor is killed; of the killed one, the next."""
+    robot = driving.robot
+    chosen = moments(60 if FULL else 3)
+    for place, (name, number, moment) in enumerate(chosen, 1):
+        program: Program = getattr(driving, name)
+        time.sleep(moment)
+        robot.ask("away")
+        robot.ask("hear")
+        status = program.end(number)
+        killed = number == signal.SIGKILL
+        assert status == (-number if killed else 0), program.said
+        assert killed or program.said == ""
+        if name == "node" or not killed:
+            robot.stands()
+            state = robot.ask()
+            assert state["wheels"][-1] == 0
+            assert killed or name == "gate" or state["stops"][-1] is True
+        if place < len(chosen):
+            robot.ask("hear")
+            driving.restart(program)
+            assert robot.ask()["wheels"][0] == 0
