@@ -113,8 +113,7 @@ class Network:
     def end(self, process: subprocess.Popen[str], number: int) -> int:
         """Send a signal to a process, and wait for its end; its status."""
         if process.poll() is None:
-            maps = Path(f"/proc/{process.pid}/maps").read_text()
-            self._shared |= {Path(each) for each in _SHARED.findall(maps)}
+            self._shared |= shared(process)
             process.send_signal(number)
         status = process.wait(PATIENCE)
         for pipe in filter(None, (process.stdin, process.stdout)):
@@ -145,6 +144,12 @@ class Network:
         errors = self._folder / f"errors-{self._count}.txt"
         with errors.open("w") as stream:
             return Program(self, self.start(*words, package=package, stderr=stream), errors)
+
+
+def shared(process: subprocess.Popen[str]) -> set[Path]:
+    """The files of shared memory that a process has mapped, its own and those of others."""
+    maps = Path(f"/proc/{process.pid}/maps").read_text()
+    return {Path(each) for each in _SHARED.findall(maps)}
 
 
 @contextmanager

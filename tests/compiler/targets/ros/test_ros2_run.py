@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import random
+import re
 import signal
 import subprocess
 import time
@@ -24,7 +25,7 @@ from tests.fretc.watch.watched import Watched
 from tests.programs import needs_package
 from tests.ros1 import until
 from tests.ros2.emitted import write
-from tests.ros2.real.network import NODE, PATIENCE, Network, Program, network
+from tests.ros2.real.network import NODE, PATIENCE, Network, Program, network, shared
 
 ROOT = Path(__file__).parents[4]
 NEAR = 0.05
@@ -226,6 +227,8 @@ def test_what_cannot_be_trusted_or_heard_stops_the_robot_and_is_told(driving: Dr
     robot.stands()
 
 
+SEGMENT = re.compile(r"fastrtps_[0-9a-f]{16}")
+"""Shared memory of one process; ports are shared by several."""
 ENDS = (
     ("node", signal.SIGINT),
     ("gate", signal.SIGTERM),
@@ -252,10 +255,16 @@ def test_whenever_a_node_is_ended_the_last_that_the_wheels_get_is_zero(driving: 
         time.sleep(moment)
         robot.ask("away")
         robot.ask("hear")
+        segments = [
+            each
+            for each in shared(program.process)
+            if SEGMENT.fullmatch(each.name) and each.exists()  # not of one that has ended before
+        ]
         status = program.end(number)
         killed = number == signal.SIGKILL
         assert status == (-number if killed else 0), program.said
         assert killed or program.said == ""
+        assert killed or not all(each.exists() for each in segments), "its own is left behind"
         if name == "node" or not killed:
             robot.stands()
             state = robot.ask()
