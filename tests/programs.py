@@ -114,6 +114,11 @@ def hide() -> None:
     os.environ["PATH"] = path_without_programs()
 
 
+def hidden() -> bool:
+    """Whether no test may use what is not of the Python of the tests."""
+    return _hidden
+
+
 def path(name: str) -> str | None:
     """Where the program is; None: nowhere."""
     assert name in PROGRAMS, name
