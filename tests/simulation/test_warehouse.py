@@ -149,5 +149,5 @@ def test_the_report_shows_what_only_sentences_state(audit: Audit, tmp_path: Path
     evidence.write_text(audit.evidence, "utf-8")
     report = fretc.make_report(fretc.read_project(str(AGV)), str(evidence))
     assert "abs(speed) &lt;= 1.5 m/s" in report.html
-    assert "Three requirements are violated, in one of two runs; the most severe: " in report.html
+    assert "Three requirements are violated in one of two runs; the most severe: " in report.html
     assert all(f"({id})" in report.html for id in PLANTED)

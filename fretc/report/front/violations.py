@@ -54,7 +54,7 @@ def gravest_first(
 
 
 def headline(views: Sequence[RequirementView], runs: int, gravity: Mapping[str, Gravity]) -> str:
-    """`Five requirements are violated, in six of 16 runs; the most severe: No contact (R14)`.
+    """`Five requirements are violated in six of 16 runs; the most severe: No contact (R14)`.
 
     Args:
         views: violated requirements, at least one, the gravest first.

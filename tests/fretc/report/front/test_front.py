@@ -141,7 +141,7 @@ RUNS = ("walk-1", "walk-2", "stop-1", "stop-2")
     [
         (
             {"R1": "vvss", "R2": "vvss"},
-            "Title of R1 (R1) and Title of R2 (R2) are violated, in two of four runs.",
+            "Title of R1 (R1) and Title of R2 (R2) are violated in two of four runs.",
             [
                 "Title of R1 (R1) [HAZ-1, catastrophic] fails only in walk (2 of 2 runs).",
                 "Title of R2 (R2) [HAZ-1, catastrophic] fails only in walk (2 of 2 runs).",
@@ -149,12 +149,12 @@ RUNS = ("walk-1", "walk-2", "stop-1", "stop-2")
         ),
         (
             {"R1": "vsss", "R2": "ssss"},
-            "Title of R1 (R1) is violated, in one of four runs.",
+            "Title of R1 (R1) is violated in one of four runs.",
             ["Title of R1 (R1) [HAZ-1, catastrophic] fails only in walk (1 of 2 runs)."],
         ),
         (
             {"R1": "vsnn"},
-            "Title of R1 (R1) is violated, in one of four runs.",
+            "Title of R1 (R1) is violated in one of four runs.",
             [
                 "Title of R1 (R1) [HAZ-1, catastrophic] fails only in walk (1 of 2 runs); "
                 "undecided in 2 other runs: stop-1 and stop-2."
