@@ -177,7 +177,11 @@ class Node:
         node.create_subscription(Twist, COMMAND, gate.hear_command, 1)
         # A steady clock: simulated or corrected time must not stop the watchdogs.
         node.create_timer(PERIOD, gate.ring, clock=Clock(clock_type=ClockType.STEADY_TIME))
-        rclpy.spin(node)
+        try:
+            rclpy.spin(node)
+        finally:
+            if not rclpy.ok():  # All is said. The others learn at once that it is gone.
+                node.destroy_node()
 
 
 class Worker(Thread):
