@@ -232,8 +232,8 @@ def _timed(step: Step, *values: object) -> tuple[float, float]:
 
 
 def _night(path: Path, requirements: str, *shape: Any) -> tuple[float, float]:
-    night, judged = Night(*shape), plan(requirements)
-    total, most = _timed(night.audit, path, judged)
+    night, audit_plan = Night(*shape), plan(requirements)
+    total, most = _timed(night.audit, path, audit_plan)
     return total - night.making, most
 
 

@@ -518,8 +518,8 @@ def _steps(machines: Sequence[Any], rows: Sequence[Mapping[str, bool]]) -> float
 # Memory and compiling -------------------------------------------------------------------------
 
 
-def _run(made: FormalizedRequirement, rows: Sequence[Sequence[bool | None]]) -> object:
-    machine: Any = monitor(made)
+def _run(monitored: FormalizedRequirement, rows: Sequence[Sequence[bool | None]]) -> object:
+    machine: Any = monitor(monitored)
     return machine.run(rows)
 
 

@@ -102,12 +102,12 @@ def made(folder: Path) -> Iterator[tuple[str, float]]:
 
 def pictures(browser: Browser, path: Path) -> str:
     """Take the pictures of a page, and return what was measured."""
-    heights, said = [], list[str]()
+    heights, messages = [], list[str]()
     for width, height, scheme in ((1440, 900, "light"), (390, 844, "light"), (1440, 900, "dark")):
         page = browser.new_page(viewport={"width": width, "height": height})
         page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
-        page.on("console", lambda message: said.append(message.text))
-        page.on("pageerror", lambda error: said.append(str(error)))
+        page.on("console", lambda message: messages.append(message.text))
+        page.on("pageerror", lambda error: messages.append(str(error)))
         page.goto(path.as_uri())
         stem = path.with_name(f"{path.stem}-{width}-{scheme}")
         heights.append(_screens(page, stem))
@@ -116,7 +116,7 @@ def pictures(browser: Browser, path: Path) -> str:
             sheets = page.pdf(path=path.with_suffix(".pdf"), prefer_css_page_size=True)
         page.close()
     count = len(re.findall(rb"/Type /Page\b(?!s)", sheets))
-    return f"{heights[0]:>7} {heights[1]:>7} {count:>7}  {'; '.join(said) or 'nothing'}"
+    return f"{heights[0]:>7} {heights[1]:>7} {count:>7}  {'; '.join(messages) or 'nothing'}"
 
 
 def _screens(page: Page, stem: Path) -> int:
@@ -152,8 +152,8 @@ def main() -> None:
             if re.search(args.only, name):
                 page = folder / f"{name}.html"
                 size = page.stat().st_size / 1e6
-                seen = pictures(browser, page)
-                print(f"{name:>15} {seconds:>5.1f} s {size:>6.2f} {seen}", flush=True)
+                columns = pictures(browser, page)
+                print(f"{name:>15} {seconds:>5.1f} s {size:>6.2f} {columns}", flush=True)
 
 
 if __name__ == "__main__":

@@ -39,20 +39,22 @@ def render(name: str, **values: Any) -> str:
 def _environment() -> Environment:
     from compiler.files.template_engine import environment  # Many commands fill no template.
 
-    made = environment(template_root(), Path(__file__))
-    made.filters["python"] = python
-    made.filters["comment"] = comment
-    made.filters["c_comment"] = c_comment
-    made.filters["c_remark"] = c_remark
-    made.filters["js"] = script
-    made.filters["json"] = to_json
-    made.filters["data"] = data
-    made.filters["toml"] = toml
-    made.filters["key"] = key
-    made.filters["hoa"] = quoted
-    made.filters["dot"] = quoted
-    made.globals["signs"] = signs
-    return made
+    jinja = environment(template_root(), Path(__file__))
+    jinja.filters.update(
+        python=python,
+        comment=comment,
+        c_comment=c_comment,
+        c_remark=c_remark,
+        js=script,
+        json=to_json,
+        data=data,
+        toml=toml,
+        key=key,
+        hoa=quoted,
+        dot=quoted,
+    )
+    jinja.globals["signs"] = signs
+    return jinja
 
 
 def python(value: object) -> str:

@@ -40,10 +40,8 @@ from fretc.audit.store.container import (
     bad_store,
     next_unfinished,
     packed,
-    record_of,
     recovered,
     remove_file,
-    summary_of,
     unfinished,
     unpacked,
     whole_results,
@@ -112,8 +110,7 @@ def _stored(path: Path, rows: Sequence[Row]) -> Iterator[PackedRun]:
     """
     with container.opened(path) as connection:
         for row in rows:
-            place = row.place
-            yield PackedRun(row, record_of(connection, place), summary_of(connection, place))
+            yield container.packed_run(connection, row)
 
 
 class ReusableResults:
@@ -151,7 +148,7 @@ class ReusableResults:
                 return
             ((text,),) = connection.execute("SELECT plan FROM about LIMIT 2").fetchall()
             about = decoded(parsed(f"{text}"), StoredPlan) if text is not None else None
-            entries = [*Authenticity(os.path.realpath(folder), f"{text}", key).entries(connection)]
+            entries = [*Authenticity.of(folder, f"{text}", key).entries(connection)]
         authentic = [(row, entry) for row, entry in entries if entry is not None]
         self.foreign |= len(authentic) < len(entries)
         if about is None or not authentic:
@@ -221,8 +218,7 @@ class StoreWriter:
         """The files of audits that were stopped."""
         about = StoredPlan(plan.key, dict(keys(plan)), dict(plan.labels))
         self._about = to_json(plain(about))
-        place = os.path.realpath(folder)
-        self._authenticity = None if key is None else Authenticity(place, self._about, key)
+        self._authenticity = None if key is None else Authenticity.of(folder, self._about, key)
         self._file: StoreFile | None = None
         self._places = {log: index for index, log in enumerate(logs)}
         found = {log: self.earlier.find(log) for log in logs}
@@ -365,7 +361,9 @@ class StoreWriter:
         if self._read:  # a mistyped name must not cost the evidence of the last audit
             head = replace(head, probabilities=estimates or UNSET)
             sha256 = complete(file.path, head, rows)
-            store = Store(str(self.folder), sha256, head, publish(file.path), rows, True)
+            store = Store(
+                str(self.folder), sha256, head, publish(file.path), rows, by_summaries=True
+            )
             for path in self._stopped:
                 remove_file(path)
             earlier_store.remove_tables(self.folder)

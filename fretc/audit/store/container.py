@@ -226,7 +226,7 @@ def _unpacked(data: bytes, what: str, size: int | None = None) -> bytes:
     """What was compressed; a size is compared before memory is used."""
     try:
         known = zstandard.frame_content_size(data)
-        if known != (known if size is None else size) or not 0 <= known <= LARGEST:
+        if size not in (None, known) or not 0 <= known <= LARGEST:
             raise SchemaError(f"{what} does not have the size that its row says")
         return zstandard.ZstdDecompressor().decompress(data)
     except zstandard.ZstdError as error:
@@ -349,7 +349,7 @@ def opened(path: Path) -> Iterator[sqlite3.Connection]:
 def has_summaries(connection: sqlite3.Connection) -> bool:
     """Whether a store has summaries; one of an earlier version has none."""
     columns = connection.execute("SELECT * FROM runs LIMIT 0").description
-    return ("summary", *[None] * 6) in columns
+    return any(name == "summary" for name, *_ in columns)
 
 
 def rows(connection: sqlite3.Connection) -> list[Row]:
@@ -369,13 +369,13 @@ def rows(connection: sqlite3.Connection) -> list[Row]:
     return found
 
 
-def record_of(connection: sqlite3.Connection, index: int) -> bytes:
+def record_of(connection: sqlite3.Connection, place: int) -> bytes:
     """The packed record of a run.
 
     Raises:
         SchemaError: there is none.
     """
-    return _bytes(connection, "record", index)
+    return _bytes(connection, "record", place)
 
 
 def summary_of(connection: sqlite3.Connection, place: int) -> bytes:
@@ -385,6 +385,15 @@ def summary_of(connection: sqlite3.Connection, place: int) -> bytes:
         SchemaError: there is none.
     """
     return _bytes(connection, "summary", place)
+
+
+def packed_run(connection: sqlite3.Connection, row: Row) -> PackedRun:
+    """A run as the store holds it, in a store that has summaries.
+
+    Raises:
+        SchemaError: its record or its summary is missing.
+    """
+    return PackedRun(row, record_of(connection, row.place), summary_of(connection, row.place))
 
 
 def _bytes(connection: sqlite3.Connection, column: str, place: int) -> bytes:

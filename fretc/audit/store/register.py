@@ -25,9 +25,8 @@ from fretc.audit.store.container import (
     check_record,
     check_summary,
     has_summaries,
-    record_of,
+    packed_run,
     rows,
-    summary_of,
 )
 from fretc.audit.store.recordings import KnownBy
 from fretish.classes.frozen import dataclass
@@ -109,6 +108,11 @@ class Authenticity:
     """The JSON of the plan."""
     key: bytes
 
+    @classmethod
+    def of(cls, folder: Path, plan: str, key: bytes) -> Authenticity:
+        """The marks of an audit that writes its store into the folder."""
+        return cls(os.path.realpath(folder), plan, key)
+
     def mark(self, row: Row, entry: str) -> str:
         """What only the user's key can make of a run."""
         hashes = (row.sha256, row.packed_sha256, row.summary_sha256)
@@ -123,10 +127,7 @@ class Authenticity:
         """
         found = connection.execute("SELECT entry, mark FROM runs ORDER BY place")
         for row, (entry, mark) in zip(rows(connection), found, strict=True):
-            run = PackedRun(
-                row, record_of(connection, row.place), summary_of(connection, row.place)
-            )
-            yield row, self._entry(run, f"{entry}", f"{mark}")
+            yield row, self._entry(packed_run(connection, row), f"{entry}", f"{mark}")
 
     def _entry(self, run: PackedRun, entry: str, mark: str) -> Entry | None:
         if not hmac.compare_digest(mark.encode(), self.mark(run.row, entry).encode()):
@@ -146,7 +147,7 @@ def is_authentic(connection: Connection, folder: Path, key: bytes) -> bool:
         SchemaError: the file is damaged.
     """
     ((plan,),) = connection.execute("SELECT plan FROM about LIMIT 2")
-    own = Authenticity(os.path.realpath(folder), f"{plan}", key)
+    own = Authenticity.of(folder, f"{plan}", key)
     return has_summaries(connection) and all(entry for _, entry in own.entries(connection))
 
 

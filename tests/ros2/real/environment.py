@@ -8,7 +8,6 @@ environment of the tests, since `lark-parser`, which rclpy needs, overwrites `la
 
 from __future__ import annotations
 
-import fcntl
 import hashlib
 import os
 import shutil
@@ -49,6 +48,8 @@ def install(release: str) -> Path:
     Raises:
         NotInstalledError: there are no wheels for this platform, or no registry answers.
     """
+    import fcntl  # Windows has none, and no wheels of ROS 2 either
+
     place = folder(release)
     place.parent.mkdir(parents=True, exist_ok=True)
     with place.with_suffix(".lock").open("w") as lock:

@@ -1,7 +1,6 @@
 """A summary counts for its record only: one that contradicts it is an error, never a verdict."""
 
 import json
-import os
 import sqlite3
 from collections.abc import Callable
 from contextlib import closing
@@ -41,7 +40,7 @@ def store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     assert isinstance(key, bytes)
     folder.mkdir()
     file = StoreFile(next_unfinished(folder), "plan")
-    authenticity = register.Authenticity(os.path.realpath(folder), "plan", key)
+    authenticity = register.Authenticity.of(folder, "plan", key)
     for place, results in enumerate(RUNS):
         run = packed(place, results)
         file.put(run, entry(), authenticity.mark(run.row, entry()))
