@@ -17,6 +17,7 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
+from benchmarks.figures import Figure
 from compiler.files.build_id import __version__
 from compiler.files.records import decoded
 from compiler.files.text_files import sha256
@@ -242,6 +243,8 @@ def _violation(choose: random.Random, trigger: int, horizon: int) -> dict[str, A
 # Each in a process of its own ---------------------------------------------------------------------
 
 JSON, STORE = "evidence.json", "evidence"
+SHARE = 0.05
+"""Of runs that are violated, if a size does not say it."""
 SIZES = "50x20,50x20x1,50x100,1000x20,1000x100,15x10000"
 
 
@@ -275,6 +278,26 @@ def report(folder: Path, requirements: int, form: str) -> tuple[float, float, fl
     return time.process_time() - start, before, _most_memory(), len(page.encode()) / 1e6
 
 
+def measured(size: str, form: str) -> tuple[float, float, float, float, float]:
+    """MB of evidence, then what `report` gives, in processes of their own."""
+    requirements, runs, *share = size.split("x")
+    alone = get_context("spawn")
+    with tempfile.TemporaryDirectory() as name:
+        folder, violated = Path(name), float(share[0]) if share else SHARE
+        with alone.Pool(1) as one:
+            one.apply(written, (folder, int(requirements), int(runs), violated, form))
+        read = sum(file.stat().st_size for file in _files(folder / form)) / 1e6
+        with alone.Pool(1) as one:
+            return read, *one.apply(report, (folder, int(requirements), form))
+
+
+def figures() -> Iterator[Figure]:
+    what = "report of 100 requirements in 1 000 runs"
+    _, took, _, most, _ = measured("100x1000", STORE)
+    yield Figure(what, took, "s of CPU", 8)
+    yield Figure(what, most, "MB of memory", 200)
+
+
 def _most_memory() -> float:
     status = Path("/proc/self/status").read_text(encoding="ascii")
     return int(status.partition("VmHWM:")[2].split()[0]) * 1024 / 1e6
@@ -291,17 +314,10 @@ def main() -> None:
         end="",
     )
     print(f" {'memory':>8}, before")
-    alone = get_context("spawn")
     for size, form in product(args.sizes.split(","), args.forms.split(",")):
         requirements, runs, *share = size.split("x")
-        violated = float(share[0]) if share else 0.05
-        with tempfile.TemporaryDirectory() as name:
-            folder = Path(name)
-            with alone.Pool(1) as one:
-                one.apply(written, (folder, int(requirements), int(runs), violated, form))
-            read = sum(file.stat().st_size for file in _files(folder / form)) / 1e6
-            with alone.Pool(1) as one:
-                took, before, most, page = one.apply(report, (folder, int(requirements), form))
+        violated = float(share[0]) if share else SHARE
+        read, took, before, most, page = measured(size, form)
         print(
             f"{f'{requirements} x {runs}':>20} {violated:>9.0%}  {form:>13} {read:>5.0f} MB "
             f"{page:>5.2f} MB {took:>6.1f} s {most:>5.0f} MB, {before:.0f} MB",

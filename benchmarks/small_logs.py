@@ -27,6 +27,7 @@ from typing import Any
 from mcap.reader import make_reader
 from mcap.writer import CompressionType, Writer
 
+from benchmarks.figures import Figure
 from benchmarks.fleet import plan
 from benchmarks.timing import least
 from fretc.audit.many_logs import audit_log
@@ -121,6 +122,18 @@ def print_nights(requirements: str, paths: Sequence[Path]) -> None:
         cpu, wall = (now / before for now, before in zip(taken, first, strict=True))
         print(f"  {name:26} {taken[0]:6.2f} s of CPU, {taken[1]:6.2f} s of wall: "
               f"{cpu:.3f} and {wall:.3f} of the first, limit {LIMITS[name]}")  # fmt: skip
+
+
+def figures(log: str = "traces/mission-seed15.mcap", count: int = 1000) -> Iterator[Figure]:
+    """Nights of R1 and of the fifteen requirements, each from its own first night."""
+    for requirements in ("requirements/r1.fret", "requirements/mission"):
+        with tempfile.TemporaryDirectory() as folder:
+            logs = Path(folder) / "logs"
+            logs.mkdir()
+            (_, first, _), *later = nights(requirements, cut(Path(log), count, logs))
+        for name, cpu, _ in later:
+            what = f"{requirements.rpartition('/')[2]}: {name}"
+            yield Figure(what, cpu / first, "x the first night's CPU", LIMITS[name])
 
 
 def main() -> None:

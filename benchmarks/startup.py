@@ -13,9 +13,10 @@ import statistics
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
+from benchmarks.figures import RUNS, Figure
 from benchmarks.small_logs import cut
 
 FRETC = str(Path(sys.executable).parent / "fretc")
@@ -23,6 +24,13 @@ ROOT = Path(__file__).parent.parent
 R1 = "requirements/r1.fret"
 EMPTY = [sys.executable, "-c", "pass"]
 NUMPY = [sys.executable, "-c", "import numpy"]
+LIMITS = {
+    "fretc r1.fret --emit monitor": 1.0,
+    "fretc check, 15 requirements": 1.5,
+    "fretc audit, 1 s": 2.0,
+    "fretc report": 2.5,
+}
+"""What a command may take, as a multiple of NumPy's import."""
 
 
 def commands(folder: Path) -> Mapping[str, Sequence[str]]:
@@ -41,6 +49,7 @@ def commands(folder: Path) -> Mapping[str, Sequence[str]]:
         "python r1_monitor.py --help": [*monitor, "--help"],
         "python r1_monitor.py, 10 rows": [*monitor, str(rows)],
         "fretc check": [FRETC, "check"],
+        "fretc check, 15 requirements": [FRETC, "check", "requirements/mission"],
         "fretc audit, 1 s": [FRETC, "audit", str(log), "--requirements", R1, "-o", evidence],
         "fretc report": [
             FRETC, "report", "--requirements", R1, "--evidence", evidence, "-o", str(folder / "r"),
@@ -58,6 +67,21 @@ def seconds(command: Sequence[str]) -> float:
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
+def ratios(command: Sequence[str], runs: int) -> list[tuple[float, float, float]]:
+    """Seconds of the command, an empty Python and NumPy's import, in turn."""
+    seconds(command)
+    return [(seconds(command), seconds(EMPTY), seconds(NUMPY)) for _ in range(runs)]
+
+
+def figures() -> Iterator[Figure]:
+    with tempfile.TemporaryDirectory() as folder:
+        there = commands(Path(folder))
+        for name, limit in LIMITS.items():
+            times = ratios(there[name], RUNS)
+            value = statistics.median(ours / numpy for ours, _, numpy in times)
+            yield Figure(name, value, "x importing NumPy", limit)
+
+
 def main() -> None:
     """Print a table: least, median, and ratios of the medians pair by pair."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -66,8 +90,7 @@ def main() -> None:
     print(f"{'command':32} {'least':>8} {'median':>8} {'x empty Python':>16} {'x NumPy':>10}")
     with tempfile.TemporaryDirectory() as folder:
         for name, command in commands(Path(folder)).items():
-            seconds(command)
-            times = [(seconds(command), seconds(EMPTY), seconds(NUMPY)) for _ in range(runs)]
+            times = ratios(command, runs)
             ours = [each[0] for each in times]
             empty, numpy = (statistics.median(t[0] / t[i] for t in times) for i in (1, 2))
             least, median = min(ours), statistics.median(ours)

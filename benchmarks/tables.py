@@ -11,14 +11,16 @@ import argparse
 import csv
 import os
 import random
+import statistics
 import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
+from benchmarks.figures import RUNS, Figure
 from benchmarks.monitoring import requirement
-from benchmarks.timing import least
+from benchmarks.timing import least, seconds
 from compiler.targets.python.monitor import text
 
 SENTENCE = "in m mode, whenever p the sw shall within 10 ticks satisfy (q | r)"
@@ -67,6 +69,10 @@ TABLES: dict[str, Callable[[int], Iterator[str]]] = {
 }
 
 
+LIMITS = {"digits": 1.0, "words, unknowns": 1.5}
+"""What the whole process may take, as a multiple of `csv.reader`."""
+
+
 def spent(command: Sequence[str], runs: int) -> float:
     """CPU seconds of one process, the least."""
     found = []
@@ -101,6 +107,18 @@ def csv_alone(path: Path) -> None:
     with path.open(encoding="utf-8", newline="") as lines:
         for _ in csv.reader(lines):
             pass
+
+
+def figures(rows: int = 10**6) -> Iterator[Figure]:
+    with tempfile.TemporaryDirectory() as folder:
+        monitor, path = Path(folder, "monitor.py"), Path(folder, "table")
+        monitor.write_text(text(requirement(SENTENCE)), encoding="utf-8")
+        for name, limit in LIMITS.items():
+            path.write_text("\n".join(TABLES[name](rows)) + "\n", encoding="utf-8")
+            command = [str(monitor), str(path)]
+            pairs = [(spent(command, 1), seconds(lambda: csv_alone(path), 1)) for _ in range(RUNS)]
+            value = statistics.median(ours / alone for ours, alone in pairs)
+            yield Figure(f"monitor over CSV: {name}", value, "x csv.reader", limit)
 
 
 def main() -> None:

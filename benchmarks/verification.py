@@ -7,12 +7,14 @@ slowest of the provers of others, verifies the file of the same requirement.
 from __future__ import annotations
 
 import resource
+import statistics
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
+from benchmarks.figures import RUNS, Figure
 from compiler.logic.claims import Layer
 from compiler.project.folder import load
 from compiler.targets import dafny
@@ -35,6 +37,15 @@ def fretc(*arguments: str) -> float:
     """Of one command."""
     command = [str(Path(sys.executable).with_name("fretc")), *arguments]
     return cpu(lambda: subprocess.run(command, capture_output=True, check=False))
+
+
+def figures() -> Iterator[Figure]:
+    mission = str(REQUIREMENT.parent / "mission")
+    for what, path, limit in (("R1", str(REQUIREMENT), 3.0), ("the mission", mission, 6.0)):
+        with tempfile.TemporaryDirectory() as folder:
+            command = ("verify", path, "--output", f"{folder}/proofs.json")
+            value = statistics.median(fretc(*command) for _ in range(RUNS))
+        yield Figure(f"verify of {what}, all layers", value, "s of CPU", limit)
 
 
 def main() -> None:

@@ -1,0 +1,39 @@
+"""What people wait for, beside its limit, one line each.
+
+    python -m benchmarks [NAME ...]    # for example: python -m benchmarks startup tables
+
+Runs every benchmark that has limits, or those that are named; all of them take some 20 minutes on
+idle cores. `benchmarks/README.md` tells what each one measures.
+"""
+
+from __future__ import annotations
+
+import argparse
+from importlib import import_module
+
+NAMES = (
+    "startup",
+    "small_logs",
+    "tables",
+    "monitoring",
+    "compiled_monitors.figures",
+    "report",
+    "requirement_sets",
+    "verification",
+)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("name", nargs="*", help=f"one of {', '.join(NAMES)}")
+    names = parser.parse_args().name or NAMES
+    unknown = sorted({*names}.difference(NAMES))
+    if unknown:
+        parser.error(f"no benchmark {unknown[0]}: one of {', '.join(NAMES)}")
+    for name in names:
+        for figure in import_module(f"benchmarks.{name}").figures():
+            print(figure, flush=True)
+
+
+if __name__ == "__main__":
+    main()
