@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from itertools import combinations
+from itertools import combinations, islice
 from operator import attrgetter
 
 from compiler.formalization.formalized import FormalizedRequirement
@@ -241,11 +241,12 @@ def _candidates(
         return bool(read[left.id] & read[right.id])
 
     yield from (pair for pair in combinations(counters, 2) if near(*pair))
-    triples = [
+    near_triples = (
         (a, b, c)
         for a, b, c in combinations(counters, 3)
         if near(a, b) + near(b, c) + near(a, c) > 1
-    ]
+    )
+    triples = list(islice(near_triples, MOST_TRIPLES + 1))
     if len(triples) <= MOST_TRIPLES:
         yield from triples
     if len(counters) > _FEW:

@@ -111,7 +111,9 @@ class Game:
         self.transition = Transition([*counters, *assumptions])
         self.legal, self.reachable = alphabet.legal, alphabet.reachable
         self._inputs, self._outputs = bdd.cube(alphabet.inputs), bdd.cube(alphabet.outputs)
-        self.safe = self.reachable
+        self.safe = self.legal & self.reachable
+        """Ticks without a violation, for inputs that can occur together: without `legal`, comparisons
+        of one signal have as many patterns as if they were independent."""
         for counter in counters:
             self.safe = self.safe & counter.safe
         self.kept = upheld(alphabet, assumptions, budget) if kept is None else kept

@@ -47,7 +47,7 @@ def switched(game: Game, fresh: Numbers) -> Switched | None:
     """The requirements of a game with switches; None: they have memory, or are too many."""
     if not game.is_memoryless:
         return None
-    safe, switches = game.reachable, [next(fresh) for _ in game.counters]
+    safe, switches = game.legal & game.reachable, [next(fresh) for _ in game.counters]
     for counter, switch in zip(game.counters, switches, strict=True):
         safe = safe & (counter.safe | -bdd.variable(switch))
         if bdd.size(safe) > MOST_NODES:
