@@ -6,17 +6,20 @@ Each line is printed with OxiDD and with BuDDy; `--one` measures the engine of `
 from __future__ import annotations
 
 import os
+import statistics
 import subprocess
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import spot
 
+from benchmarks.figures import RUNS, Figure
 from compiler.logic import printing
 from fretc.analysis.analysis import analyze
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.roles import Roles
+from fretc.analysis.findings import RealizabilityVerdict
 from tests.requirement_sets import ROLES, drawn, requirements, roles, staged
 
 ENGINES = ("OxiDD", "BuDDy")
@@ -121,6 +124,26 @@ def pump() -> None:
     found = analyze(made, named)
     seconds = time.process_time() - start
     print(f"a pump, {len(made)}: all {len(found.conflicts)} conflicts, {seconds:.2f} s", flush=True)
+
+
+def of_thresholds(count: int) -> float:
+    """Seconds of `analyze` for an alarm for each threshold of one signal, each threshold."""
+    names = [f"x{n}" for n in range(count)]
+    made = requirements(
+        *(f"whenever t > {n} the sw shall immediately satisfy x{n}" for n in range(count)),
+        *(f"the sw shall always satisfy x{n + 1} -> x{n}" for n in range(count - 1)),
+    )
+    start = time.process_time()
+    found = analyze(made, roles(["t"], names))
+    assert found.verdict is RealizabilityVerdict.REALIZABLE
+    return (time.process_time() - start) / count
+
+
+def figures() -> Iterator[Figure]:
+    of_thresholds(6)
+    for few, many in ((12, 24), (24, 48), (48, 96)):
+        value = statistics.median(of_thresholds(many) / of_thresholds(few) for _ in range(RUNS))
+        yield Figure(f"analyze: each of {many} thresholds", value, f"x each of {few}", 1.2)
 
 
 def show(what: str, sentences: Sequence[str], named: Roles) -> None:

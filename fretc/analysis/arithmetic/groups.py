@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cached_property
 
 import z3
 
@@ -52,8 +53,8 @@ class ComparisonGroup:
         found = _sorted_out(choice, limit)
         self._patterns, self._cells, self._open = found.patterns, found.cells, found.open
         self._is_favoured = choice.role is favoured
-        self._bits: dict[int, int] = {}
-        """Bits of the formulas that a cell does not decide."""
+        self._bit_of: dict[int, int] = {}
+        self._is_used = False
         self._cell_bits: list[int] = []
         self._points: dict[tuple[int, Pattern], Point] = {}
         self._in_cell: dict[int, Point] = {}
@@ -70,18 +71,33 @@ class ComparisonGroup:
     @property
     def is_used(self) -> bool:
         """Whether it has bits."""
-        return bool(self._bits)
+        return self._is_used
 
     def atom(self, name: str) -> Function:
         """Function of one of its atoms."""
-        if not self._bits:
+        if not self._is_used:
+            self._is_used = True
             size = max(0, len(self._cells) - 1).bit_length()
             self._cell_bits = [next(self._fresh) for _ in range(size)]
-            free = [n for n in range(len(self._choice.formulas)) if not self._is_of_cell(n)]
-            self._bits = {number: next(self._fresh) for number in free}
         number, is_so = self._choice.of[name]
         function = self._formula(number)
         return function if is_so else -function
+
+    @property
+    def _bits(self) -> Mapping[int, int]:
+        """Each formula that a cell does not decide, in the order of patterns, and its bit."""
+        return {number: self._bit(number) for number in self._free}
+
+    @cached_property
+    def _free(self) -> Sequence[int]:
+        """The formulas that a cell does not decide."""
+        return [n for n in range(len(self._choice.formulas)) if not self._is_of_cell(n)]
+
+    def _bit(self, number: int) -> int:
+        """The bit of a formula, next to those of the requirement that is the first to read it."""
+        if number not in self._bit_of:
+            self._bit_of[number] = next(self._fresh)
+        return self._bit_of[number]
 
     def _is_of_cell(self, number: int) -> bool:
         """Whether a formula reads only inputs, in a group of both players."""
@@ -89,8 +105,8 @@ class ComparisonGroup:
         return self._choice.is_mixed and not reads(self._choice.formulas[number], outputs)
 
     def _formula(self, number: int) -> Function:
-        if number in self._bits:
-            return bdd.variable(self._bits[number])
+        if not self._is_of_cell(number):
+            return bdd.variable(self._bit(number))
         function = bdd.false()
         for index, cell in enumerate(self._cells):
             if next(iter(cell.patterns))[number]:  # they agree on what is of inputs
@@ -147,9 +163,9 @@ class ComparisonGroup:
         return self.known | self._some_of(self._open)
 
     def _some_of(self, known: Iterable[Pattern]) -> Function:
-        function = bdd.false()
+        function, bits = bdd.false(), self._bits
         for pattern in known:
-            function = function | bdd.point({bit: pattern[n] for n, bit in self._bits.items()})
+            function = function | bdd.point({bit: pattern[n] for n, bit in bits.items()})
         return function
 
     def formulas(self) -> Iterator[tuple[int, Term]]:
@@ -158,9 +174,10 @@ class ComparisonGroup:
 
     def labels(self) -> Iterator[tuple[int, str]]:
         """Bit of a formula → an atom of a sentence with this formula."""
+        bits = self._bits
         for name, (number, is_so) in self._choice.of.items():
-            if is_so and number in self._bits and self._atoms.found[name].names:
-                yield self._bits[number], name
+            if is_so and number in bits and self._atoms.found[name].names:
+                yield bits[number], name
 
     @property
     def names(self) -> frozenset[str]:

@@ -112,8 +112,8 @@ class Game:
         self.legal, self.reachable = alphabet.legal, alphabet.reachable
         self._inputs, self._outputs = bdd.cube(alphabet.inputs), bdd.cube(alphabet.outputs)
         self.safe = self.legal & self.reachable
-        """Ticks without a violation, for inputs that can occur together: without `legal`, comparisons
-        of one signal have as many patterns as if they were independent."""
+        """Ticks without a violation, for inputs that can occur together: without `legal`, the
+        comparisons of one signal have as many patterns as if they were independent."""
         for counter in counters:
             self.safe = self.safe & counter.safe
         self.kept = upheld(alphabet, assumptions, budget) if kept is None else kept

@@ -294,3 +294,32 @@ def test_too_many_patterns_are_not_checked(monkeypatch: pytest.MonkeyPatch) -> N
         )
         assert found.verdict is answer, found.why
     assert f"have more than {2**count} patterns" in found.why
+
+
+def thresholds(count: int) -> list[str]:
+    """An alarm for each threshold of one signal; a higher alarm has all lower ones with it."""
+    return [
+        *(f"whenever t > {n} the sw shall immediately satisfy x{n}" for n in range(count)),
+        *(f"the sw shall always satisfy x{n + 1} -> x{n}" for n in range(count - 1)),
+    ]
+
+
+@pytest.mark.slow
+def test_many_thresholds_of_one_signal_cost_in_proportion() -> None:
+    nodes = []
+    for count in (12, 24, 48):
+        found = staged(*thresholds(count), roles=roles(["t"], [f"x{n}" for n in range(count)]))
+        game = found.game(found.arena.counters, ENDLESS)
+        assert game.solution().is_realizable
+        nodes.append(bdd.size(game.safe))
+    assert nodes[2] - nodes[1] < 2.5 * (nodes[1] - nodes[0]), nodes
+
+
+@pytest.mark.slow
+def test_a_conflict_among_many_thresholds_is_found() -> None:
+    sentences = [*thresholds(30), "the sw shall never satisfy x20"]
+    found = analyzed(*sentences, roles=roles(["t"], [f"x{n}" for n in range(30)]))
+    assert found.verdict is UNREALIZABLE
+    assert ("R21", "R60") in {conflict.requirements for conflict in found.conflicts}
+    above = next(each for each in found.conflicts if each.requirements == ("R21", "R60"))
+    assert above.play[-1]["t"] > 20  # type: ignore[operator]
