@@ -258,7 +258,7 @@ def _chains(
     from fretc.audit.evidence.result_summaries import ResultSummaries
     from fretc.audit.measurements.confidence_intervals import REFUTED
     from fretc.audit.store.anywhere import required_source, source
-    from fretc.traceability.chain import chains
+    from fretc.traceability.chain_builder import chains
     from fretc.verification.reader import known
 
     proofs = or_fail(known(verification))

@@ -27,11 +27,9 @@ from fretc.traceability.chain import (
     WORDS,
     Chain,
     ChainItem,
-    Suspect,
-    changed,
-    upstream_of,
 )
 from fretc.traceability.meanings import Key, ReviewText, leaves
+from fretc.traceability.suspects import Suspect, changed, upstream_of
 from fretc.traceability.texts import BindingsTexts, ReviewedTexts
 from fretc.traceability.word_diff import Segment
 from fretish.classes.frozen import dataclass

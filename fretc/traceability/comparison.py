@@ -9,9 +9,10 @@ from typing import Any
 from compiler.project.project import Project
 from compiler.project.stated_numbers import drifted
 from fretc.audit.evidence.verdicts import VERDICTS, severity
-from fretc.traceability.chain import ANALYSIS, VERDICT, Suspect
+from fretc.traceability.chain import ANALYSIS, VERDICT
 from fretc.traceability.changes import ReviewChange
 from fretc.traceability.lock import Lock, Review, ReviewStatus
+from fretc.traceability.suspects import Suspect
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code
 from monitors import kernel

@@ -19,20 +19,11 @@ from fretc.analysis.findings import RealizabilityVerdict
 from fretc.audit.evidence.reader import VERDICTS
 from fretc.audit.evidence.verdict_inputs import SENTENCE
 from fretc.traceability.analyses import Realizability
-from fretc.traceability.chain import (
-    ACCEPTANCE,
-    FORMULAS,
-    IN_FORCE,
-    REVIEW,
-    Chain,
-    ChainItem,
-    Suspect,
-    changed,
-    status_node,
-    suspects,
-)
+from fretc.traceability.chain import ACCEPTANCE, FORMULAS, REVIEW, Chain, ChainItem, status_node
 from fretc.traceability.changes import ReviewChange, changes
+from fretc.traceability.fingerprints import IN_FORCE
 from fretc.traceability.meanings import agree
+from fretc.traceability.suspects import Suspect, changed, suspects
 from fretc.traceability.texts import ReviewedTexts, as_table
 from fretc.traceability.texts import read as read_texts
 from fretish.bindings.canonical import digest

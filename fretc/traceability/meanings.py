@@ -27,12 +27,14 @@ from fretc.traceability.chain import (
     TEXT,
     WORDS,
     ChainItem,
+    status_node,
+)
+from fretc.traceability.fingerprints import (
     print_of_hazard,
     print_of_header,
     print_of_proof,
     print_of_status,
     print_of_words,
-    status_node,
 )
 from fretc.traceability.texts import (
     BindingsTexts,

@@ -29,7 +29,7 @@ from fretc.audit.project_inputs import all_verdict_inputs
 from fretc.report.model.marks import Mark, verdict_mark
 from fretc.report.model.suspicions import AboutResults, about_estimation, since_review
 from fretc.traceability.artefacts import Product, monitors, products
-from fretc.traceability.chain import chains
+from fretc.traceability.chain_builder import chains
 from fretc.traceability.lock import Lock, ReviewStatus, review_statuses
 from fretc.traceability.waivers import Waiver
 from fretc.verification.reader import Proofs

@@ -12,8 +12,8 @@ from fretc.audit.evidence.result_summaries import Recorded, ResultSummary
 from fretc.audit.evidence.verdict_inputs import KINDS, MONITOR, VerdictInputs, why
 from fretc.audit.measurements.confidence_intervals import SUPPORTED
 from fretc.audit.measurements.trials import Trials
-from fretc.traceability.chain import outdated
 from fretc.traceability.changes import in_words
+from fretc.traceability.fingerprints import outdated
 from fretc.traceability.lock import Review, ReviewStatus
 from fretish import syntax
 from monitors import kernel

@@ -16,7 +16,7 @@ from fretc.audit.project_inputs import all_verdict_inputs
 from fretc.report.make import ReportBuild, make
 from fretc.report.model.marks import verdict_mark
 from fretc.report.model.results import ResultRow
-from fretc.traceability.chain import chains
+from fretc.traceability.chain_builder import chains
 from fretc.traceability.lock import Lock, accepted
 from fretc.traceability.lock import text as lock_text
 from fretish.diagnostics.diagnostic import Diagnostic

@@ -40,7 +40,7 @@ from fretc.reproduction.manifest import Manifest
 from fretc.reproduction.manifest import read as read_manifest
 from fretc.reproduction.outcome import ItemOutcome, Recheck
 from fretc.reproduction.results import recheck
-from fretc.traceability.chain import chains
+from fretc.traceability.chain_builder import chains
 from fretc.traceability.lock import Lock, accepted
 from fretc.verification import reader as proven
 from fretc.verification.engines.sandbox import CallLimits

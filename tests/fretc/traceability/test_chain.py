@@ -10,7 +10,9 @@ from hypothesis import strategies as st
 from compiler.project.project import Project
 from fretc.audit.evidence import reader as reading
 from fretc.audit.evidence.result_summaries import ResultSummaries
-from fretc.traceability.chain import Chain, ChainItem, Link, chains, suspects
+from fretc.traceability.chain import Chain, ChainItem, Link
+from fretc.traceability.chain_builder import chains
+from fretc.traceability.suspects import suspects
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.fretc.report import cases
 

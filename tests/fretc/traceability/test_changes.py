@@ -12,7 +12,8 @@ from compiler.project.folder import load_folder
 from fretc.audit.evidence.reader import EvidenceFile
 from fretc.audit.evidence.result_summaries import ResultSummaries
 from fretc.audit.store.anywhere import read as read_evidence
-from fretc.traceability.chain import ChainItem, chains
+from fretc.traceability.chain import ChainItem
+from fretc.traceability.chain_builder import chains
 from fretc.traceability.comparison import ReviewDifference, differences
 from fretc.traceability.lock import Lock, accepted, read, review_statuses, text
 from fretc.traceability.meanings import agree

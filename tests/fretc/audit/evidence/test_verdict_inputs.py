@@ -24,7 +24,7 @@ from fretc.audit.evidence.schema import EvidenceDocument
 from fretc.audit.evidence.writer import text
 from fretc.audit.store.anywhere import read, source
 from fretc.report.make import make
-from fretc.traceability.chain import chains
+from fretc.traceability.chain_builder import chains
 from fretc.traceability.lock import Lock, review_statuses
 from fretc.traceability.lock import read as read_lock
 from fretc.traceability.lock import text as lock_text
