@@ -18,6 +18,7 @@ from fretc.watch.sources.dds_types import Offer, UnreadableTypeError
 from fretc.watch.sources.mailbox import WAIT, Mailbox
 from fretc.watch.sources.middleware import Middleware, several_publishers
 from fretc.watch.sources.source import Channel, Problem, Reconnected
+from fretc.watch.sources.type_service import TypeService
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.messages import diagnostic
@@ -111,11 +112,14 @@ class _Listening:
         """Publishers that are gone, by id: the time of their last message."""
         self._unmatched: dict[int, int] = {}
         """Publishers that do not match their own reader yet: since when."""
+        self._types = TypeService(domain, lambda: mailbox.now)
         self._known: set[tuple[Code, str]] = set()
         """The diagnostics that were reported for a topic."""
 
     def look(self) -> None:
         """Pass on the messages since the last call."""
+        for offer in self._types.answers():
+            self._open_again(offer)
         matched = self._matched()
         for kind in tuple(self._kinds.values()):
             if kind.reader is not None:
@@ -162,7 +166,10 @@ class _Listening:
         if since is not None:
             self._mailbox.tell(Reconnected(since, now))
         if (topic, offer) not in self._kinds:
-            self._open(topic, offer)
+            if _definition(offer) is None and self._types.asks(publisher.participant, offer):
+                self._kinds[topic, offer] = _Kind(None, _channel(topic, offer, None))
+            else:
+                self._open(topic, offer)
         if self._kinds[topic, offer].reader is not None:
             self._unmatched[publisher.handle] = now
         there = sum(peer.there for peer in self._peers.values() if peer.topic == topic)
@@ -183,13 +190,10 @@ class _Listening:
 
     def _open(self, topic: str, offer: Offer) -> None:
         """Open a reader for a new kind of publishers."""
-        definition = _definition(offer)
-        channel = Channel(topic, "cdr", offer.type, "", b"")
-        if definition is not None:
-            channel = Channel(topic, "cdr", offer.type, "ros2msg", definition.encode())
-        else:
+        definition = _definition(offer) or self._types.definition(offer)
+        if definition is None:
             self._tell_once(topic, _no_definition(topic, offer))
-        kind = self._kinds[topic, offer] = _Kind(None, channel)
+        kind = self._kinds[topic, offer] = _Kind(None, _channel(topic, offer, definition))
         if sum(each == topic for each, _ in self._kinds) > MOST_KINDS:
             self._tell_once(
                 topic,
@@ -202,6 +206,16 @@ class _Listening:
             kind.reader = self._domain.reader(topic, offer, definition)
         except UnreadableTypeError as error:
             self._tell_once(topic, _not_read(topic, str(error)))
+
+    def _open_again(self, offer: Offer) -> None:
+        """Open the readers that have waited for a definition."""
+        for topic, other in [*self._kinds]:
+            if other == offer:
+                self._open(topic, offer)
+        for handle, peer in self._peers.items():
+            kind = self._kinds[peer.topic, peer.offer]
+            if peer.there and peer.offer == offer and kind.reader is not None:
+                self._unmatched[handle] = self._mailbox.now
 
     def _matched(self) -> list[int]:
         """Publishers that match their readers, or never will, for example because of their type."""
@@ -277,10 +291,16 @@ def _definition(offer: Offer) -> str | None:
     return next(iter(definitions.values())) if len(definitions) == 1 else None
 
 
+def _channel(topic: str, offer: Offer, definition: str | None) -> Channel:
+    if definition is None:
+        return Channel(topic, "cdr", offer.type, "", b"")
+    return Channel(topic, "cdr", offer.type, "ros2msg", definition.encode())
+
+
 def _no_definition(topic: str, offer: Offer) -> Diagnostic:
     definitions = ros2_types.definitions(offer.type)
     if not definitions:
-        why = "is not a type of ROS 2 itself, and DDS does not send definitions"
+        why = "is not a type of ROS 2 itself, and no node describes it"
     elif offer.hash is None:
         why = "differs between releases of ROS 2, and its publisher sends no type hash"
     else:

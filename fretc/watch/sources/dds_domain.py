@@ -44,6 +44,8 @@ class DdsPublisher:
     """An identifier that does not change when the publisher is lost and found again."""
     topic: str
     offer: Offer | None
+    participant: str = ""
+    """The identifier of its participant, which begins with the number of the DDS vendor."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,6 +111,9 @@ class Domain:
         self._news = builtin.BuiltinDataReader(
             self._participant, builtin.BuiltinTopicDcpsPublication
         )
+        self._others = builtin.BuiltinDataReader(
+            self._participant, builtin.BuiltinTopicDcpsSubscription
+        )
         self._wake = WaitSet(self._participant)
         self._attach(self._news)
         self._open: list[Reader | DdsWriter] = []
@@ -126,7 +131,7 @@ class Domain:
         for each in self._open:
             del each.entity
         self._topics.clear()
-        del self._wake, self._news, self._participant
+        del self._wake, self._news, self._others, self._participant
 
     def wait(self, seconds: float) -> None:
         """Wait until data arrives, or for so long."""
@@ -145,7 +150,20 @@ class Domain:
             if not samples[0].sample_info.valid_data:
                 yield DdsPublisher(handle, id, "", None)
             elif (topic := ros_topic(samples[0].topic_name)) is not None:
-                yield DdsPublisher(handle, id, topic, offered(samples[0]))
+                participant = samples[0].participant_key.hex
+                yield DdsPublisher(handle, id, topic, offered(samples[0]), participant)
+
+    def readers_of_others(self) -> Iterator[tuple[str, str]]:
+        """Participant and DDS topic of readers that appeared since the last call."""
+        for _ in range(_AT_ONCE):
+            try:
+                samples = self._others.take()
+            except Exception:  # as above
+                continue
+            if not samples:
+                return
+            if samples[0].sample_info.valid_data:
+                yield samples[0].participant_key.hex, samples[0].topic_name
 
     def reader(self, topic: str, offer: Offer, definition: str | None) -> Reader:
         """A reader for messages of publishers with such an offer, and of others that match.
@@ -185,13 +203,19 @@ class Domain:
             self._topics[name, type_] = topic
         return self._topics[name, type_]
 
-    def writer(self, topic: str, offer: Offer, definition: str) -> DdsWriter:
+    def release(self, *entities: Reader | DdsWriter) -> None:
+        """Delete readers and writers, which cannot be used any more."""
+        for each in entities:
+            self._open.remove(each)
+            del each.entity
+
+    def writer(self, topic: str, offer: Offer, definition: str | None) -> DdsWriter:
         """A writer whose messages ROS 2 and every reader with type information can read.
 
         Args:
             topic: `/diagnostics`.
             offer: the offer of the writer.
-            definition: the definition of the type.
+            definition: the definition of the type; None: unknown.
 
         Raises:
             UnreadableError: the type cannot be written.
@@ -232,6 +256,11 @@ class Reader:
                 if info.valid_data:
                     sent = info.source_timestamp
                     yield Sample(each.payload, info.publication_handle, sent if sent > 0 else None)
+
+    @property
+    def publishers(self) -> int:
+        """The number of publishers from which it receives messages."""
+        return len(self.entity.get_matched_publications())
 
     def matches(self, handle: int) -> bool:
         """Whether the reader receives messages of the publisher."""
