@@ -48,6 +48,23 @@ def latest() -> Any:
     return _stores()[-1]
 
 
+def extended(fields: Mapping[str, str]) -> Any:
+    """A typestore with the types of the latest release and further ones.
+
+    Args:
+        fields: the name of each further type (`example/msg/Name`) → its fields as text.
+
+    Raises:
+        ModuleNotFoundError: rosbags is not installed.
+    """
+    from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+    store = get_typestore(Stores.LATEST)
+    for name, text in fields.items():
+        store.register(get_types_from_msg(text, name))
+    return store
+
+
 @cache
 def _stores() -> tuple[Any, ...]:
     from rosbags.typesys import Stores, get_typestore

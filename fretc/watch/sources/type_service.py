@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterator
 from functools import cache
 from typing import Any
 
+from fretc.logs.messages import ros2_types
 from fretc.logs.messages.type_descriptions import (
     DescribedField,
     DescribedType,
@@ -193,9 +194,6 @@ def _name(part: str) -> str:
 @cache
 def _store() -> Any:
     """The types of ROS 2, with the parts of the service."""
-    from rosbags.typesys import Stores, get_types_from_msg, get_typestore
-
-    store = get_typestore(Stores.ROS2_JAZZY)
-    for part, fields in (("Request", _FIELDS_OF_REQUEST), ("Response", _FIELDS_OF_RESPONSE)):
-        store.register(get_types_from_msg(fields, _name(part)))
-    return store
+    return ros2_types.extended(
+        {_name("Request"): _FIELDS_OF_REQUEST, _name("Response"): _FIELDS_OF_RESPONSE}
+    )
