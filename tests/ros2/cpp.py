@@ -17,7 +17,7 @@ _BASE, _NAME, _ARRAY = 1, 2, 3
 def write_headers(
     folder: Path, types: list[str], fields: dict[str, str], snake: Callable[[str], str]
 ) -> None:
-    """The headers that the node includes; each includes `fake.hpp`.
+    """The headers that the node includes, with structs of our own; each includes `fake.hpp`.
 
     Args:
         folder: where they go.
@@ -29,6 +29,39 @@ def write_headers(
     known: dict[str, str] = {}
     for name in types:
         _define(name.replace("/", "/msg/"), known)
+    standard = ("array", "cstdint", "memory", "sstream", "string", "vector")
+    heads = "".join(f"#include <{each}>\n" for each in standard)
+    _write(folder, heads + "".join(known.values()), fields)
+    for header in _headers(types, snake):
+        path = folder / header
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text('#include "fake.hpp"\n')
+
+
+def write_real_headers(
+    folder: Path,
+    types: list[str],
+    fields: dict[str, str],
+    snake: Callable[[str], str],
+    include: Path,
+) -> list[str]:
+    """The same with the messages of an installed ROS 2; the options by which they are included.
+
+    Args:
+        folder, types, fields, snake: as for `write_headers`.
+        include: the folder of the headers that rosidl has generated.
+    """
+    heads = "".join(f"#include <{each}>\n" for each in _headers(types, snake))
+    _write(folder, f"#include <sstream>\n{heads}", fields)
+    return [option for each in sorted(include.iterdir()) for option in ("-isystem", str(each))]
+
+
+def _headers(types: list[str], snake: Callable[[str], str]) -> list[str]:
+    return [f"{name.split('/')[0]}/msg/{snake(name.split('/')[1])}.hpp" for name in types]
+
+
+def _write(folder: Path, messages: str, fields: dict[str, str]) -> None:
+    """`messages.hpp`, and the headers of rclcpp."""
     tells = "".join(
         f"inline std::string tell(const {_cpp(name)} & m) {{{body}}}\n"
         if "return" in body
@@ -36,20 +69,11 @@ def write_headers(
         f"{{{_cpp(name)} m; {body} return m;}}\n"
         for name, body in fields.items()
     )
-    (folder / "messages.hpp").write_text(
-        "#pragma once\n#include <array>\n#include <cstdint>\n#include <memory>\n"
-        "#include <sstream>\n#include <string>\n#include <vector>\n"
-        + "".join(known.values())
-        + "template<class Message> Message made(std::istream & text);\n"
-        + tells
-    )
-    headers = [f"{name.split('/')[0]}/msg/{snake(name.split('/')[1])}.hpp" for name in types]
-    headers += [
-        "rclcpp/rclcpp.hpp",
-        *(f"rclcpp_lifecycle/lifecycle_{x}.hpp" for x in ("node", "publisher")),
-    ]
-    for header in headers:
-        path = folder / header
+    template = "template<class Message> Message made(std::istream & text);\n"
+    (folder / "messages.hpp").write_text(f"#pragma once\n{messages}{template}{tells}")
+    names = "rclcpp/rclcpp", *(f"rclcpp_lifecycle/lifecycle_{x}" for x in ("node", "publisher"))
+    for name in names:
+        path = folder / f"{name}.hpp"
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text('#include "fake.hpp"\n')
 

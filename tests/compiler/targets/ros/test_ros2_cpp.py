@@ -11,9 +11,10 @@ from catkin_pkg.package import parse_package
 from compiler.targets.ros.ros2cpp import snake
 from tests.effort import FULL
 from tests.programs import needs
-from tests.ros2.cpp import built, write_headers
+from tests.ros2.cpp import built, write_headers, write_real_headers
 from tests.ros2.emitted import write
 from tests.ros2.launch import launched
+from tests.ros2.real.environment import python
 
 ROOT = Path(__file__).parents[4]
 FAKE = ROOT / "tests/ros2/rclcpp"
@@ -79,29 +80,31 @@ def test_its_stops_are_apart_until_somebody_joins_them(package: Path) -> None:
 # The node --------------------------------------------------------------------------------------
 
 
+TYPES = (
+    "builtin_interfaces/Time diagnostic_msgs/DiagnosticArray nav_msgs/Odometry std_msgs/Bool "
+    "rcl_interfaces/ParameterDescriptor rcl_interfaces/FloatingPointRange std_msgs/String "
+    "sensor_msgs/LaserScan"
+).split()
+FIELDS = {
+    "std_msgs/Bool": 'return m.data ? "true" : "false";',
+    "std_msgs/String": "return m.data;",
+    "diagnostic_msgs/DiagnosticArray": (
+        "std::string s; for (const auto & e : m.status) "
+        '{s += e.name + "=" + std::to_string(e.level) + "; ";} return s;'
+    ),
+    "sensor_msgs/LaserScan": (
+        "m.angle_increment = 0.01f; m.range_min = 0.01f; m.range_max = 10.0f; "
+        "std::string r; while (text >> r) {m.ranges.push_back(std::stof(r));}"
+    ),
+    "nav_msgs/Odometry": "text >> m.twist.twist.linear.x;",
+}
+
+
 @pytest.fixture(scope="module")
 def node(package: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The emitted node, built with the stand-in for rclcpp."""
+    """The emitted node, built with the stand-in for rclcpp and structs of ours as messages."""
     folder = tmp_path_factory.mktemp("node")
-    types = (
-        "builtin_interfaces/Time diagnostic_msgs/DiagnosticArray nav_msgs/Odometry std_msgs/Bool "
-        "rcl_interfaces/ParameterDescriptor rcl_interfaces/FloatingPointRange std_msgs/String "
-        "sensor_msgs/LaserScan"
-    ).split()
-    fields = {
-        "std_msgs/Bool": 'return m.data ? "true" : "false";',
-        "std_msgs/String": "return m.data;",
-        "diagnostic_msgs/DiagnosticArray": (
-            "std::string s; for (const auto & e : m.status) "
-            '{s += e.name + "=" + std::to_string(e.level) + "; ";} return s;'
-        ),
-        "sensor_msgs/LaserScan": (
-            "m.angle_increment = 0.01f; m.range_min = 0.01f; m.range_max = 10.0f; "
-            "std::string r; while (text >> r) {m.ranges.push_back(std::stof(r));}"
-        ),
-        "nav_msgs/Odometry": "text >> m.twist.twist.linear.x;",
-    }
-    write_headers(folder, types, fields, snake)
+    write_headers(folder, TYPES, FIELDS, snake)
     source = package / "src"
     return built(folder, source, source / "node.cpp", (), [*STRICT, f"-I{folder}", f"-I{FAKE}"])
 
@@ -142,6 +145,22 @@ def test_the_node_lets_the_robot_go_when_it_knows_and_stops_it_when_a_demand_arr
     assert stops(lines) == ["true", "false", "true", "true"]
     assert ("publisher", "/r1_monitor_cpp/stop: 1 reliable transient local") in lines
     assert ("subscription", "/scan: 5 best effort") in lines
+
+
+@pytest.mark.slow
+def test_the_node_does_the_same_with_the_messages_of_ros_2(
+    node: Path, package: Path, tmp_path: Path
+) -> None:
+    include = python("jazzy").parents[1] / "include"
+    options = write_real_headers(tmp_path, TYPES, FIELDS, snake, include)
+    source, strict = package / "src", [*STRICT, f"-I{tmp_path}", f"-I{FAKE}", *options]
+    real = built(tmp_path, source, source / "node.cpp", (), strict)
+    scripts = (
+        [*BEGIN, *known(SECOND), "/scan 0.33", "signal", "beat"],
+        [*BEGIN, *known(SECOND, 0.5), "/scan nan", "beat", *known(2 * SECOND), "deactivate"],
+    )
+    for script in scripts:
+        assert played(real, *script) == played(node, *script)
 
 
 @pytest.mark.slow
