@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import subprocess
 from pathlib import Path
 
 import pytest
 
 from tests.command import Fretc, write
 from tests.docs.pages import FOLDER, blocks
-from tests.ros2.real.network import Robot, network
+from tests.ros2.real.network import network
 
 NODE = "nav_1_monitor"
 
@@ -40,9 +39,7 @@ def test_the_robot_stands_before_the_obstacle(fretc: Fretc, tmp_path: Path) -> N
     with network(tmp_path) as here:
         words = ("/cmd_vel:=/cmd_vel_checked", "/cmd_vel_filtered:=/cmd_vel")
         remaps = [each for word in words for each in ("-r", word)]
-        script = FOLDER.parent / "tests/ros2/real/robot.py"
-        pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
-        robot = Robot(here.start(str(script), "--ros-args", *remaps, **pipes))
+        robot = here.robot("--ros-args", *remaps)
         here.monitor(package)
         here.interceptor(package)
         for transition in ("configure", "activate"):

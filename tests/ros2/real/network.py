@@ -126,10 +126,10 @@ class Network:
             path.with_name(f"{path.name}_el").unlink(missing_ok=True)
             path.with_name(f"sem.{path.name}_mutex").unlink(missing_ok=True)
 
-    def robot(self) -> Robot:
-        """A robot that does not move yet."""
+    def robot(self, *words: str) -> Robot:
+        """A robot that does not move yet, with arguments of ROS."""
         script = str(Path(__file__).with_name("robot.py"))
-        return Robot(self.start(script, stdin=subprocess.PIPE, stdout=subprocess.PIPE))
+        return Robot(self.start(script, *words, stdin=subprocess.PIPE, stdout=subprocess.PIPE))
 
     def monitor(self, package: Path, *words: str) -> Program:
         """The node of an emitted package, not configured yet."""
