@@ -51,7 +51,8 @@ def checks(project: Project, statuses: Sequence[ReviewStatus]) -> tuple[Diagnost
     interceptor = TARGETS["interceptor"].remarks(options)
     is_whole = not has_errors(project.general) and not any(r.mistakes for r in project.requirements)
     links = _links(project) if is_whole else ()  # they are asked of all headers and hazards
-    return (*diagnostics, *interceptor, *links, *_changes(project, statuses))
+    unfinished = _unfinished(project) if is_whole else ()
+    return (*diagnostics, *interceptor, *links, *unfinished, *_changes(project, statuses))
 
 
 # Vacuity ---------------------------------------------------------------------------------------
@@ -157,6 +158,39 @@ def _links(project: Project) -> Iterator[Diagnostic]:
         yield diagnostic(
             "reaches_no_hazard", requirement.place("parents"), requirement=requirement.id
         )
+
+
+# Texts -----------------------------------------------------------------------------------------
+
+
+def _unfinished(project: Project) -> Iterator[Diagnostic]:
+    """F532 for texts of approved requirements, and of their hazards, that are only drafted."""
+    for requirement in project.requirements:
+        if requirement.status != "approved":
+            continue
+        for field in ("title", "text", "rationale"):
+            if _is_to_do(getattr(requirement, field)):
+                yield diagnostic(
+                    "unfinished_text",
+                    requirement.place(field),
+                    requirement=requirement.id,
+                    field=field,
+                )
+        above = (project.hazards.get(parent) for parent in requirement.parents)
+        for hazard in filter(None, above):
+            for field in ("title", "text"):
+                if _is_to_do(getattr(hazard, field)):
+                    yield diagnostic(
+                        "unfinished_hazard",
+                        requirement.place("parents"),
+                        requirement=requirement.id,
+                        field=field,
+                        hazard=hazard.id,
+                    )
+
+
+def _is_to_do(text: str) -> bool:
+    return text.lstrip().lower().startswith("to do:")
 
 
 # Reviews ---------------------------------------------------------------------------------------

@@ -168,6 +168,7 @@ class Code(Enum):
     UNREVIEWED_VIOLATION = ("F529", "a lock would accept a violated requirement")
     MERGED_VARIABLE = ("F530", "two variables of an export become one")
     RENAMED = ("F531", "a requirement of an export has another id now")
+    UNFINISHED_TEXT = ("F532", "an approved requirement still has a text to complete")
     RETIRED_SINCE_REVIEW = ("F540", "a requirement was retired since its review")
     OUTDATED_RESULT = ("F541", "a lock would accept an outdated result")
     UNKNOWN_LOG = ("F542", "a lock would accept a verdict on a log without a SHA-256")

@@ -108,6 +108,20 @@ TOLD: dict[str, tuple[dict[str, str], list[str], list[str]]] = {
         ],
         [],
     ),
+    "an approved requirement with a text to complete": (
+        {'"The robot must stop."': '"To do: say it."'},
+        ["F532 warning: R1 is approved, and its text still begins with `To do:`"],
+        [],
+    ),
+    "a draft with a text to complete": (
+        {
+            '"The robot must stop."': '"To do: say it."',
+            '"approved"': '"draft"',
+            'it"]': 'it", "ajpf"]',
+        },
+        ["F525"],
+        ["F532"],
+    ),
     "a retired requirement, which covers no hazard and is not looked at": (
         {'"approved"': '"retired"', '["audit"]': '["ajpf"]'},
         ["F522"],
@@ -343,3 +357,12 @@ def test_a_comparison_of_what_is_no_signal_is_shown_itself_with_the_signal(good:
     ) in run.err
     edited("r1.fret", "range < 3", "range mod 2 < 3")
     assert 'add `[proposition."((range mod 2) < 3)"]` with its `expr` to ' in good("check").err
+
+
+def test_a_hazard_to_be_named_is_told_of_the_approved_requirement_below_it(good: Fretc) -> None:
+    edited("hazards.toml", "The robot hits something", "To do: name the harm")
+    run = good("check")
+    assert run.status == 3
+    assert "F532 warning: R1 is approved, and the title of its parent HAZ-1 still begins" in run.err
+    edited("r1.fret", '"approved"', '"draft"')
+    assert "F532" not in good("check").err
