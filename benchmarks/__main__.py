@@ -16,7 +16,7 @@ NAMES = (
     "small_logs",
     "tables",
     "monitoring",
-    "compiled_monitors.figures",
+    "compiled_monitors",
     "report",
     "requirement_sets",
     "verification",
@@ -31,7 +31,9 @@ def main() -> None:
     if unknown:
         parser.error(f"no benchmark {unknown[0]}: one of {', '.join(NAMES)}")
     for name in names:
-        for figure in import_module(f"benchmarks.{name}").figures():
+        place = f"benchmarks.{name}"
+        module = f"{place}.__main__" if hasattr(import_module(place), "__path__") else place
+        for figure in import_module(module).figures():
             print(figure, flush=True)
 
 

@@ -49,7 +49,7 @@ def commands(folder: Path) -> Mapping[str, Sequence[str]]:
         "python r1_monitor.py --help": [*monitor, "--help"],
         "python r1_monitor.py, 10 rows": [*monitor, str(rows)],
         "fretc check": [FRETC, "check"],
-        "fretc check, 15 requirements": [FRETC, "check", "requirements/mission"],
+        "fretc check, 15 requirements": [FRETC, "check", "--requirements", "requirements/mission"],
         "fretc audit, 1 s": [FRETC, "audit", str(log), "--requirements", R1, "-o", evidence],
         "fretc report": [
             FRETC, "report", "--requirements", R1, "--evidence", evidence, "-o", str(folder / "r"),
