@@ -72,7 +72,8 @@ def report(inputs: Inputs) -> tuple[ReportView, Details, tuple[Diagnostic, ...]]
         for each in assessed
     )
     assessed_as = {assessment.anchor: assessment for assessment in assessed}
-    details = Details(evidence, project, assessed_as, runs_by_key)
+    result_rows = {view.anchor: view.results for view in sections}
+    details = Details(evidence, project, assessed_as, runs_by_key, result_rows)
     longest = _longest_waits(assessed, sections, details)
     reservations = (
         *(line for view in sections for line in _reservations(view, longest)),

@@ -27,7 +27,6 @@ from fretc.report.model.pictures import Across, RequirementAcross, RunMap, WordL
 from fretc.report.model.results import ResultRow
 from fretc.report.pictures.histograms import is_answered, seconds_allowed
 from fretc.report.sections.details import Details, Thresholds
-from fretc.report.sections.results import result_rows
 from fretc.report.sections.runs import run_key
 
 _ROWS, _MARKS = 180, 1_500
@@ -198,7 +197,7 @@ def _results(
     assessment: Assessment, details: Details, of: Collection[str] | None = None
 ) -> list[ResultRow]:
     """The results of a requirement in some runs, by their anchors; None: in all runs."""
-    rows = result_rows(assessment, details.runs)
+    rows = details.rows[assessment.anchor]
     return [row for row in rows if of is None or row.run in of]
 
 
@@ -210,7 +209,7 @@ def _numbers(
     assessment: Assessment, details: Details, thresholds: Thresholds, most: int
 ) -> tuple[list[RunThresholds], float | None, int, int]:
     """Arguments of `uses`: current runs, allowed time, number of rows, number of suspect runs."""
-    rows = result_rows(assessment, details.runs)
+    rows = details.rows[assessment.anchor]
     current = [
         (replace(row, mark=audit.mark), thresholds[audit.place])
         for audit, row in zip(assessment.audits, rows, strict=True)

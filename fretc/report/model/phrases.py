@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 from pathlib import PurePosixPath, PureWindowsPath
 
 from fretc.logs.storage.log_names import path_of
@@ -66,6 +67,7 @@ def size(count: int | None) -> str:
     return exact
 
 
+@lru_cache(2**14)
 def place(path: str) -> str:
     """A path independent of the machine: only the last part of an absolute path."""
     if PurePosixPath(path).is_absolute():

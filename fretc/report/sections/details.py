@@ -41,6 +41,8 @@ class Details:
     assessments: Mapping[str, Assessment]
     """Anchor of a requirement → its assessment."""
     runs: Mapping[RunKey, AuditedFile]
+    rows: Mapping[str, Sequence[ResultRow]]
+    """Anchor of a requirement → its results, in the order of the runs."""
 
     @property
     def logs(self) -> tuple[str, ...]:
