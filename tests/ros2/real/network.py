@@ -40,6 +40,13 @@ class Program:
         """What it has printed until now."""
         return self.errors.read_text()
 
+    @property
+    def hears_signals(self) -> bool:
+        """Whether it has a handler of its own for SIGTERM, as Python has for SIGINT."""
+        status = Path(f"/proc/{self.process.pid}/status").read_text()
+        (caught,) = re.findall(r"^SigCgt:\s*(\w+)$", status, re.MULTILINE)
+        return bool(int(caught, 16) >> signal.SIGTERM - 1 & 1)
+
     def end(self, number: int) -> int:
         """Send a signal, and wait for the end; its status."""
         return self.network.end(self.process, number)
@@ -133,7 +140,7 @@ class Network:
 
     def monitor(self, package: Path, *words: str) -> Program:
         """The node of an emitted package, not configured yet."""
-        return self._program(package, "-m", f"{package.name}.node", *words)
+        return self._program(package, "-m", package.name, *words)
 
     def interceptor(self, package: Path, *words: str) -> Program:
         """The interceptor of an emitted package."""

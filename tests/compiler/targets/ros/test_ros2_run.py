@@ -6,6 +6,7 @@ says of the recording afterwards are one.
 
 from __future__ import annotations
 
+import itertools
 import json
 import random
 import re
@@ -20,7 +21,7 @@ import pytest
 
 from compiler.files.text_files import write as deliver
 from tests.command import Fretc
-from tests.effort import FULL
+from tests.effort import FULL, full_only
 from tests.fretc.watch.watched import Watched
 from tests.programs import needs_package
 from tests.ros1 import until
@@ -35,9 +36,9 @@ EDGE = "upon too_close agilex_agent shall within 1 second satisfy stopped"
 pytestmark = pytest.mark.slow
 
 
-@pytest.fixture
-def here(tmp_path: Path) -> Iterator[Network]:
-    with network(tmp_path) as place:
+@pytest.fixture(params=["jazzy", pytest.param("kilted", marks=full_only("a second release"))])
+def here(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Network]:
+    with network(tmp_path, request.param) as place:
         yield place
 
 
@@ -188,6 +189,21 @@ class Driving:
 @pytest.fixture
 def driving(here: Network, package: Path) -> Driving:
     return Driving(here, package)
+
+
+@full_only("each of many starts takes a second")
+def test_a_signal_while_real_ros_is_loaded_ends_a_node_without_a_word(
+    here: Network, package: Path
+) -> None:
+    drawn = random.Random(2)
+    for start, number in itertools.product(
+        (here.monitor, here.interceptor) * 10, (signal.SIGINT, signal.SIGTERM)
+    ):
+        program = start(package)
+        until("it hears signals", lambda: program.hears_signals, PATIENCE)  # noqa: B023
+        time.sleep(drawn.uniform(0.0, 0.8))
+        assert program.end(number) == 0, program.said
+        assert program.said == ""
 
 
 def test_only_an_active_node_lets_the_robot_go(driving: Driving) -> None:
