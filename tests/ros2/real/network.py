@@ -23,8 +23,8 @@ from tests.ros2.real.environment import python
 PATIENCE = 60.0
 """Seconds for what takes one, on a machine that may be busy."""
 NODE = "r1_monitor"
-_SHARED = re.compile(r"/dev/shm/fastrtps_(?!port70)\w+")
-"""Shared memory of Fast DDS, without the ports that all domains share."""
+_SHARED = re.compile(r"/dev/shm/(?:fastrtps|fastdds)_(?!port70)\w+")
+"""Shared memory of Fast DDS 2 and 3, without the ports that all domains share."""
 
 
 @dataclass(frozen=True)
@@ -93,6 +93,7 @@ class Network:
     """A domain, and processes that end with it."""
 
     def __init__(self, folder: Path, number: int, release: str, stack: ExitStack) -> None:
+        self.release = release
         self._folder, self._stack, self._count = folder, stack, 0
         self._shared: set[Path] = set()
         """Files of shared memory, which a killed process leaves behind."""

@@ -81,6 +81,7 @@ def triggers(lines: Sequence[dict[str, Any]], id: str) -> set[int]:
 
 
 @needs_package("cyclonedds")
+@pytest.mark.parametrize("here", ["jazzy"], indirect=True)  # not the types of Fast DDS 3: F959
 def test_node_watch_and_audit_say_one_thing(here: Network, tmp_path: Path, fretc: Fretc) -> None:
     by_stamps(tmp_path / "r1")
     made = write(tmp_path / "r1", tmp_path / "made")
@@ -153,7 +154,7 @@ class Driving:
     """A robot that drives, with the nodes of R1; each can be ended, and is started again."""
 
     def __init__(self, here: Network, package: Path) -> None:
-        self._here, self._package = here, package
+        self._here, self._package, self.release = here, package, here.release
         self.robot = here.robot()
         self.gate, self.node = here.interceptor(package), here.monitor(package)
         self.robot.ask("go")
@@ -217,8 +218,11 @@ def test_only_an_active_node_lets_the_robot_go(driving: Driving) -> None:
     robot.stands()
     stops = robot.until("a stop comes", lambda state: True in state["stops"])["stops"]
     assert stops[-1] is True
-    robot.ask(f"try {NODE} deactivate")  # its state does not have that
-    until("it is refused", lambda: "a transition was refused" in node.said, PATIENCE)
+    if driving.release == "jazzy":  # its state does not have that, and rclpy does not answer
+        robot.ask(f"try {NODE} deactivate")
+        until("it is refused", lambda: "a transition was refused" in node.said, PATIENCE)
+    else:
+        assert robot.change("deactivate") == [False]
     assert robot.change("cleanup") == [True]
     assert robot.ask()["speed"] == 0
     driving.activate()
@@ -247,7 +251,7 @@ def test_what_cannot_be_trusted_or_heard_stops_the_robot_and_is_told(driving: Dr
     robot.stands()
 
 
-SEGMENT = re.compile(r"fastrtps_[0-9a-f]{16}")
+SEGMENT = re.compile(r"(fastrtps|fastdds)_[0-9a-f]{16}")
 """Shared memory of one process; ports are shared by several."""
 ENDS = (
     ("node", signal.SIGINT),
