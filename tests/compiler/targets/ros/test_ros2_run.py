@@ -81,7 +81,6 @@ def triggers(lines: Sequence[dict[str, Any]], id: str) -> set[int]:
 
 
 @needs_package("cyclonedds")
-@pytest.mark.parametrize("here", ["jazzy"], indirect=True)  # not the types of Fast DDS 3: F959
 def test_node_watch_and_audit_say_one_thing(here: Network, tmp_path: Path, fretc: Fretc) -> None:
     by_stamps(tmp_path / "r1")
     made = write(tmp_path / "r1", tmp_path / "made")
