@@ -129,6 +129,7 @@ def measured_in_ros2(made: Path, kind: str, scans: int, count: int) -> str:
         here.interceptor(made)
         node = here.monitor(made).process
         by_hand = here.start(robot, "by-hand", kind, str(count))
+        here.start(robot, "listener")
         lidar = here.start(robot, "lidar", str(scans), made.name, stdout=subprocess.PIPE)
         assert lidar.stdout is not None
         assert lidar.stdout.readline() == "begun\n"

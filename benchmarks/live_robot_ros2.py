@@ -2,6 +2,7 @@
 
 python3 live_robot_ros2.py lidar SCANS NODE
 python3 live_robot_ros2.py by-hand least|outline REQUIREMENTS
+python3 live_robot_ros2.py listener
 
 The node by hand hears the same topics as the emitted node, and publishes the same messages: each
 change of the stop, the stop at each heartbeat, a line for each requirement that a tick triggers,
@@ -68,12 +69,14 @@ def lidar(scans: int, name: str) -> None:
     node.create_subscription(Twist, "/wheels", lambda m: note("zero", m.linear.x == 0), 10)
     executor = SingleThreadedExecutor()
     executor.add_node(node)
-    threading.Thread(target=executor.spin, daemon=True).start()
+    thread = threading.Thread(target=executor.spin, daemon=True)
+    thread.start()
     activate(node, name)
     while (
         min(p.get_subscription_count() for p in (publisher, odometry)) < 2
         or commands.get_subscription_count() < 1
         or min(map(node.count_publishers, ("/stop", "/by_hand", "/wheels"))) < 1
+        or min(map(node.count_subscribers, ("/stop", "/by_hand"))) < 2
     ):
         time.sleep(0.01)
     step = 2 * math.pi / BEAMS
@@ -107,6 +110,8 @@ def lidar(scans: int, name: str) -> None:
         asked = time.perf_counter()
         publisher.publish(scan)
     print(json.dumps(times), flush=True)
+    executor.shutdown()
+    thread.join()
 
 
 def least(scan) -> float:  # type: ignore[no-untyped-def]
@@ -222,6 +227,10 @@ def main() -> None:
     rclpy.init()
     if sys.argv[1] == "lidar":
         lidar(int(sys.argv[2]), sys.argv[3])
+    elif sys.argv[1] == "listener":  # the interceptor's part for the node by hand
+        node = rclpy.create_node("listener")
+        node.create_subscription(Bool, "/by_hand", lambda _: None, 10)
+        rclpy.spin(node)
     else:
         rclpy.spin(ByHand(sys.argv[2], int(sys.argv[3])).node)
 

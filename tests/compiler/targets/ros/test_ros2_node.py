@@ -415,7 +415,7 @@ def test_a_signal_ends_the_node_with_a_request_to_stop(package: Path, number: in
 def test_without_ros_it_prints_what_it_needs(package: Path) -> None:
     ran = subprocess.run(
         [sys.executable, "-S", "-m", package.name],
-        cwd=package,
+        env={"PYTHONPATH": str(package)},
         capture_output=True,
         text=True,
         check=False,
@@ -439,8 +439,8 @@ def test_a_signal_while_ros_is_loaded_is_only_noted(
 ) -> None:
     (tmp_path / "diagnostic_msgs.py").write_text(LOADING)  # the first that is imported
     pipes = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE)
-    words, path = (sys.executable, "-m", package.name), {"PYTHONPATH": str(tmp_path)}
-    with subprocess.Popen(words, cwd=package, env=path, text=True, **pipes) as process:
+    words, path = (sys.executable, "-m", package.name), {"PYTHONPATH": f"{tmp_path}:{package}"}
+    with subprocess.Popen(words, env=path, text=True, **pipes) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == "loading\n"
         process.send_signal(number)
