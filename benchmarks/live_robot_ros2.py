@@ -14,13 +14,11 @@ import math
 import sys
 import threading
 import time
+from typing import Any
 
 import rclpy  # type: ignore[import-not-found]
-from diagnostic_msgs.msg import (  # type: ignore[import-not-found]
-    DiagnosticArray,
-    DiagnosticStatus,
-    KeyValue,
-)
+from diagnostic_msgs.msg import DiagnosticArray, KeyValue  # type: ignore[import-not-found]
+from diagnostic_msgs.msg import DiagnosticStatus as Status
 from geometry_msgs.msg import Twist  # type: ignore[import-not-found]
 from lifecycle_msgs.msg import Transition  # type: ignore[import-not-found]
 from lifecycle_msgs.srv import ChangeState  # type: ignore[import-not-found]
@@ -37,7 +35,7 @@ TICK, HELD, REPORT = 0.1, 0.2, 0.5
 """Seconds."""
 
 
-def activate(node, name: str) -> None:  # type: ignore[no-untyped-def]
+def activate(node: Any, name: str) -> None:
     """Configure and activate a managed node."""
     client = node.create_client(ChangeState, f"/{name}/change_state")
     assert client.wait_for_service(60.0)
@@ -114,13 +112,13 @@ def lidar(scans: int, name: str) -> None:
     thread.join()
 
 
-def least(scan) -> float:  # type: ignore[no-untyped-def]
+def least(scan: Any) -> float:
     """The least valid range."""
     low, high = scan.range_min, scan.range_max
     return min([r for r in scan.ranges if low <= r <= high], default=0.0)
 
 
-def outline(scan) -> float:  # type: ignore[no-untyped-def]
+def outline(scan: Any) -> float:
     """The distance from a square of 0.6 m."""
     nearest = math.inf
     for i, r in enumerate(scan.ranges):
@@ -151,13 +149,13 @@ class ByHand:
         self.node.create_subscription(Odometry, "/odom", self.on_odometry, qos_profile_sensor_data)
         self.node.create_timer(TICK, self.on_tick)
 
-    def on_scan(self, scan) -> None:  # type: ignore[no-untyped-def]
+    def on_scan(self, scan: Any) -> None:
         self.note("/scan")
         self.near = self.distance(scan) < self.limit
         self.ever = self.ever or self.near
         self.decide()
 
-    def on_odometry(self, message) -> None:  # type: ignore[no-untyped-def]
+    def on_odometry(self, message: Any) -> None:
         self.note("/odom")
         if abs(message.twist.twist.linear.x) >= 0.01:
             self.since = None
@@ -204,13 +202,11 @@ class ByHand:
             self.reported = time.monotonic()
             self.reports.publish(self.report(now))
 
-    def report(self, now):  # type: ignore[no-untyped-def]
+    def report(self, now: Any) -> Any:
         values = [KeyValue(key=f"messages of {t}", value=str(n)) for t, n in self.counts.items()]
         message = DiagnosticArray()
         message.header.stamp = now.to_msg()
-        message.status = [
-            DiagnosticStatus(level=b"\0", name="by_hand: sources", message="ok", values=values)
-        ]
+        message.status = [Status(level=b"\0", name="by_hand: sources", message="ok", values=values)]
         for i in range(self.count):
             own = [
                 KeyValue(key="verdict", value="violated" if self.stop else "satisfied"),
@@ -218,7 +214,7 @@ class ByHand:
                 KeyValue(key="obligation_pending", value=str(self.stop)),
             ]
             message.status.append(
-                DiagnosticStatus(level=b"\0", name=f"by_hand: R{i}", message="ok", values=own)
+                Status(level=b"\0", name=f"by_hand: R{i}", message="ok", values=own)
             )
         return message
 

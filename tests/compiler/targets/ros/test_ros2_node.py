@@ -396,7 +396,8 @@ def started(robot: Robot, seconds: float, action: Any) -> tuple[int, Any]:
     robot.world.after(10**8, None, activate)
     robot.world.after(round(seconds * 1e9), None, lambda: action(process))
     with process.importing(robot.package):
-        import_module(f"{robot.package.name}.node").FLUSH = 0.0
+        node: Any = import_module(f"{robot.package.name}.node")
+        node.FLUSH = 0.0
         status: int = import_module(f"{robot.package.name}.__main__").main()
     return status, process
 
@@ -438,7 +439,7 @@ def test_a_signal_while_ros_is_loaded_is_only_noted(
     package: Path, tmp_path: Path, number: int
 ) -> None:
     (tmp_path / "diagnostic_msgs.py").write_text(LOADING)  # the first that is imported
-    pipes = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE)
+    pipes: dict[str, Any] = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE)
     words, path = (sys.executable, "-m", package.name), {"PYTHONPATH": f"{tmp_path}:{package}"}
     with subprocess.Popen(words, env=path, text=True, **pipes) as process:
         assert process.stdout is not None

@@ -22,6 +22,8 @@ import pytest
 from compiler.files.text_files import write as deliver
 from tests.command import Fretc
 from tests.effort import FULL, full_only
+from tests.fretc.logs.logs import Sent
+from tests.fretc.logs.logs import write as write_log
 from tests.fretc.watch.watched import Watched
 from tests.programs import needs_package
 from tests.ros1 import until
@@ -146,6 +148,61 @@ def test_node_watch_and_audit_say_one_thing(here: Network, tmp_path: Path, fretc
     assert last(lines, "EDGE")["violated_ns"] == last(live, "EDGE")["violated_ns"] == broken
 
 
+@full_only("a mission by a simulated clock")
+def test_by_a_simulated_clock_node_and_audit_say_one_thing(
+    here: Network, tmp_path: Path, fretc: Fretc
+) -> None:
+    by_stamps(tmp_path / "r1")
+    made = write(tmp_path / "r1", tmp_path / "made")
+    robot, node = here.robot(), here.monitor(made, "--ros-args", "-p", "use_sim_time:=true")
+    here.interceptor(made)
+    robot.ask("simulate 4")
+    assert robot.change("configure", "activate") == [True, True]
+    robot.until("all hear", lambda s: s["readers"] == [1, 1] and s["gates"] == [1, 1])
+    robot.ask("go")
+    for _ in range(3):
+        robot.ask("away")
+        robot.drives()
+        robot.stands()
+    robot.ask("away")
+    robot.drives()
+    robot.ask("stuck")
+    robot.until("EDGE is broken", lambda s: last(s["lines"], "EDGE")["verdict"] == "violated")
+    robot.ask("free")
+    robot.stands()
+    robot.ask("away")
+    robot.ask("rests")
+    sent = robot.ask("log")["log"]
+    end = sent[-1][2]
+    lines = robot.until(
+        "all of the log is judged", lambda s: s["lines"] and s["lines"][-1]["time_ns"] > end
+    )["lines"]
+
+    messages = [Sent(topic, kind, bytes.fromhex(data), time) for topic, kind, time, data in sent]
+    write_log(tmp_path / "run.mcap", messages)
+    ran = fretc("audit", "run.mcap", "--requirements", "r1", "-o", "audit.json")
+    assert ran.status == 1, ran.err
+    results = json.loads(Path("audit.json").read_text())["results"]
+    assert {each["requirement"] for each in results} == {"R1", "EDGE"}
+    for each in results:
+        id = each["requirement"]
+        expected = {trigger["ns"] for trigger in each["triggers"]}
+        assert len(expected) >= 4
+        assert {time for time in triggers(lines, id) if time <= end} <= expected
+        if id == "EDGE":
+            assert triggers(lines, id) == expected
+            assert last(lines, id)["violated_ns"] == each["violations"][0]["start_ns"]
+
+    robot.ask("back")
+    robot.until("a run begins", lambda s: s["lines"][-1]["time_ns"] < end - 50 * 10**9)
+    robot.ask("plans")
+    robot.drives()
+    robot.until("it is judged", lambda s: last(s["lines"], "EDGE")["verdict"] != "no data")
+    assert last(robot.ask()["lines"], "EDGE")["verdict"] != "violated"
+    assert node.end(signal.SIGINT) == 0
+    assert node.said == ""
+
+
 # How nodes begin and end -------------------------------------------------------------------------
 
 
@@ -248,6 +305,34 @@ def test_what_cannot_be_trusted_or_heard_stops_the_robot_and_is_told(driving: Dr
     driving.drives()
     robot.ask("rests")
     robot.stands()
+
+
+FOREIGN = """
+import rclpy
+from std_msgs.msg import String
+
+rclpy.init()
+node = rclpy.create_node("foreign")
+publisher = node.create_publisher(String, "/gwendolen_control", 10)
+rclpy.spin(node)
+"""
+
+
+@full_only("neighbours that are rare")
+def test_in_a_domain_of_200_topics_a_node_restarts_and_a_wrong_type_stops_the_robot(
+    here: Network, driving: Driving
+) -> None:
+    robot, gate = driving.robot, driving.gate
+    robot.ask("crowd")
+    assert driving.node.end(signal.SIGINT) == 0
+    assert driving.restart(driving.node) == 0
+    driving.drives()
+    foreign = here.start("-c", FOREIGN, stderr=subprocess.DEVNULL)
+    robot.stands()
+    crowd = "interceptor.py: /gwendolen_control has several publishers: the robot stands until"
+    until("it is told", lambda: crowd in gate.said, PATIENCE)
+    here.end(foreign, signal.SIGKILL)
+    driving.drives()
 
 
 SEGMENT = re.compile(r"(fastrtps|fastdds)_[0-9a-f]{16}")
