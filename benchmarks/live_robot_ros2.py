@@ -17,7 +17,7 @@ import time
 from typing import Any
 
 import rclpy  # type: ignore[import-not-found]
-from diagnostic_msgs.msg import DiagnosticArray, KeyValue  # type: ignore[import-not-found]
+from diagnostic_msgs.msg import DiagnosticArray, KeyValue
 from diagnostic_msgs.msg import DiagnosticStatus as Status
 from geometry_msgs.msg import Twist  # type: ignore[import-not-found]
 from lifecycle_msgs.msg import Transition  # type: ignore[import-not-found]
