@@ -1,6 +1,6 @@
-"""From a scan to the stop and to zero on the wheels, in ROS 1: the emitted nodes, and one by hand.
+"""From a scan to the stop and to zero on the wheels: the emitted nodes, and one by hand.
 
-    python -m benchmarks.live_latency [--scans 800]
+    python -m benchmarks.live_latency [--ros 1|2] [--scans 800]
 
 A lidar of 720 beams at 40 Hz is near in each second scan; both nodes hear it at the same time. Wall
 time from before its publication to the arrival of the stop, and of zero, at its process; the share
@@ -26,6 +26,7 @@ from compiler.targets.target import TargetOptions
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.programs import DEBIANS_PYTHON
 from tests.ros1 import ros, ros1_or_skip, until
+from tests.ros2.real.network import network
 
 HERE = Path(__file__).parent
 BINDINGS = """
@@ -54,7 +55,7 @@ command = "/cmd_vel"
 output = "/wheels"
 period = "50 ms"
 stop_timeout = "500 ms"
-ros = 1
+ros = {ros}
 """
 KINDS = {
     "least": {"reduce": 'reduce = "min"', "least": "1.0"},
@@ -66,7 +67,7 @@ KINDS = {
 }
 
 
-def package(folder: Path, kind: str, count: int, time: str) -> Path:
+def package(folder: Path, kind: str, count: int, time: str, ros: int) -> Path:
     """The package of so many requirements, all of which a near scan triggers."""
     project_folder = folder / "live"
     texts: dict[Path, str | bytes] = {
@@ -75,13 +76,13 @@ def package(folder: Path, kind: str, count: int, time: str) -> Path:
         else f"whenever near the robot shall within {i} ticks satisfy near"
         for i in range(count)
     }
-    texts[project_folder / "bindings.toml"] = BINDINGS.format(time=time, **KINDS[kind])
+    texts[project_folder / "bindings.toml"] = BINDINGS.format(time=time, ros=ros, **KINDS[kind])
     assert deliver(texts) is None
     paths = expanded_paths([str(project_folder)])
     assert not isinstance(paths, Diagnostic)
     project = load(paths)
     target, options = (
-        TARGETS["ros1-package"],
+        TARGETS[f"ros{ros}-package"],
         TargetOptions(declarations=project.declarations, attribution=project.attribution),
     )
     assert [target.refuse(requirement) for requirement in project.formalized] == [None] * count
@@ -116,11 +117,33 @@ def measured(made: Path, kind: str, scans: int) -> str:
         assert lidar.stdout is not None
         assert lidar.stdout.readline() == "begun\n"
         before = seconds(node), seconds(by_hand)
-        found = json.loads(lidar.stdout.readline())
+        times = json.loads(lidar.stdout.readline())
         took = seconds(node) - before[0], seconds(by_hand) - before[1]
-    spreads = " | ".join(_spread(found[each]) for each in ("stop", "by hand", "zero"))
+    return line(times, took, scans)
+
+
+def measured_in_ros2(made: Path, kind: str, scans: int, count: int) -> str:
+    """A line of the table: the same in ROS 2."""
+    with tempfile.TemporaryDirectory() as folder, network(Path(folder)) as here:
+        robot = str(HERE / "live_robot_ros2.py")
+        here.interceptor(made)
+        node = here.monitor(made).process
+        by_hand = here.start(robot, "by-hand", kind, str(count))
+        here.start(robot, "listener")
+        lidar = here.start(robot, "lidar", str(scans), made.name, stdout=subprocess.PIPE)
+        assert lidar.stdout is not None
+        assert lidar.stdout.readline() == "begun\n"
+        before = seconds(node), seconds(by_hand)
+        times = json.loads(lidar.stdout.readline())
+        took = seconds(node) - before[0], seconds(by_hand) - before[1]
+        return line(times, took, scans)
+
+
+def line(times: dict[str, list[float]], took: tuple[float, float], scans: int) -> str:
+    """Milliseconds to each answer, and CPU seconds of both nodes, as cells."""
+    spreads = " | ".join(_spread(times[each]) for each in ("stop", "by hand", "zero"))
     shares = " | ".join(f"{100 * each / (scans * 0.025):.1f} %" for each in took)
-    lost = scans // 2 - 1 - len(found["stop"])
+    lost = scans // 2 - 1 - len(times["stop"])
     return f"{spreads} | {lost} | {shares} | {took[0] / took[1]:.2f}"
 
 
@@ -134,14 +157,25 @@ def _spread(times: list[float]) -> str:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--scans", type=int, default=800)
-    scans = parser.parse_args().scans
-    ros1_or_skip()
+    parser.add_argument("--ros", type=int, choices=(1, 2), default=1)
+    parser.add_argument("--kinds", nargs="+", choices=KINDS, default=[*KINDS])
+    options = parser.parse_args()
+    scans = options.scans
+    if options.ros == 1:
+        ros1_or_skip()
     head = "p50 | p99 | max | by hand: p50 | p99 | max | zero: p50 | p99 | max"
     print(f"| stop, ms: | {head} | no answer | CPU | by hand | ratio |\n{'|---' * 14}|")
-    for kind, time, count in itertools.product(KINDS, ("header.stamp", "log_time"), (1, 20)):
+    for kind, time, count in itertools.product(
+        options.kinds, ("header.stamp", "log_time"), (1, 20)
+    ):
         with tempfile.TemporaryDirectory() as folder:
-            made = package(Path(folder), kind, count, time)
-            print(f"| {count}, {kind}, {time} | {measured(made, kind, scans)} |", flush=True)
+            made = package(Path(folder), kind, count, time, options.ros)
+            cells = (
+                measured(made, kind, scans)
+                if options.ros == 1
+                else measured_in_ros2(made, kind, scans, count)
+            )
+            print(f"| {count}, {kind}, {time} | {cells} |", flush=True)
 
 
 if __name__ == "__main__":

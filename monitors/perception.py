@@ -202,12 +202,15 @@ class OnlineEvaluator:
         self._make, self._setting = monitor, setting
         self.resets = 0
         """The number of times that a clock was set and a new run began."""
+        self.changes = 0
+        """The number of steps and of other changes of the monitor's state."""
         self._begin()
 
     def _begin(self) -> None:
         self.perception = Perception(self._setting)
         self.monitor = self._make()
         self.ledger = Ledger((self.monitor,), KEPT)
+        self.changes += 1
         self._latest: dict[str, int] = {}
         self._received = 0
         self._ahead: tuple[list[Mapping[str, Truth]], tuple[Truth, ...]] | None = None
@@ -245,6 +248,7 @@ class OnlineEvaluator:
         if found is not None:
             self.ledger.withdraw(*found)
             self._ahead = None
+            self.changes += 1
 
     def pass_to(self, now: int) -> None:
         """Advance to `now`: all messages received earlier have been processed."""
@@ -258,6 +262,7 @@ class OnlineEvaluator:
         for time, row in rows:
             self.ledger.advance(time, row)
             self._ahead = None
+            self.changes += 1
 
     def obligation_pending(self) -> "tuple[Truth, ...]":
         """For each requirement, whether an obligation is open now; None: unknown.

@@ -5,8 +5,9 @@ library functions than in an audit, and may differ in the last digits. The text 
 copied into emitted nodes: it needs the standard library only.
 """
 
+from array import array
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from math import cos, hypot, inf, isfinite, isinf, isnan, sin
+from math import cos, hypot, inf, isfinite, isnan, nan, sin
 from typing import Any, NamedTuple
 
 from monitors.kernel.readings import Reading, Single, exact, number
@@ -77,6 +78,10 @@ def sample(policy: Policy, message: Any, single: bool = False) -> Reading:
         value = value[policy.place]
     if policy.words:
         return _place(policy, value)
+    if policy.each and policy.quick and _is_floats(value):
+        quick = _quick_sample(policy, policy.quick, message, value)
+        if quick is not None:
+            return Single(quick) if single and policy.reduce != "outline" else quick
     elements = _elements(policy, message, value if policy.each else (value,), single)
     if elements is None or all(element is None for element in elements):
         return None
@@ -84,10 +89,47 @@ def sample(policy: Policy, message: Any, single: bool = False) -> Reading:
         start, step = (_beside(message, name) for name in ("angle_min", "angle_increment"))
         if start is None or step is None:
             return None
-        return _clearance(policy, elements, float(start), float(step))
+        return _clearance(policy, enumerate(elements), float(start), float(step))
     measured = [element for element in elements if element is not None]
     chosen = max(measured) if policy.reduce == "max" else min(measured)
     return Single(chosen) if single else chosen
+
+
+def _is_floats(values: Any) -> bool:
+    if isinstance(values, array):
+        return values.typecode in ("f", "d")
+    return {*map(type, values)} == {float}
+
+
+def _quick_sample(
+    policy: Policy, quick: "Callable[..., list[Reading]]", message: Any, values: "Sequence[float]"
+) -> "float | None":
+    """The sample where one extreme element decides it; None: all elements must be looked at.
+
+    It decides if it is a valid measurement, and no invalid element can be more extreme.
+    """
+    extreme = max(values, default=nan) if policy.reduce == "max" else min(values, default=nan)
+    harmless = {DROP, NEAR} if policy.reduce == "max" else {DROP, FAR}
+    nan_kind, *infinities, other = policy.invalid
+    opposite = infinities[policy.reduce == "max"]
+    if not isfinite(extreme) or not {nan_kind, opposite, other} <= harmless:
+        return None
+    row = [_beside(message, name) for name in policy.beside]
+    if None in row or quick((extreme,), lambda x: None, *row) != [extreme]:
+        return None
+    if policy.reduce != "outline":
+        return extreme
+    start, step = (_beside(message, name) for name in ("angle_min", "angle_increment"))
+    if start is None or step is None:
+        return None
+    nearest = (values.index(extreme), extreme)
+    top, bottom = _ratio(policy)
+    gap = _clearance(policy, (nearest,), float(start), float(step))
+    limit = (gap + _reach(policy)) * bottom / top
+    near = [(i, value) for i, value in enumerate(values) if value <= limit]
+    readings = quick([value for _, value in near], lambda x: None, *row)
+    places = [i for i, _ in near]
+    return _clearance(policy, zip(places, readings), float(start), float(step))
 
 
 def _place(policy: Policy, value: Any) -> Reading:
@@ -142,25 +184,48 @@ def _meant(policy: Policy, x: Reading) -> Reading:
     return {DROP: None, FAR: inf, NEAR: -inf}[meaning]
 
 
-def _clearance(policy: Policy, ranges: "Sequence[Reading]", start: float, step: float) -> float:
-    """The distance in metres between the footprint and the nearest scan point."""
-    if -inf in ranges:
-        return 0.0
+def _clearance(
+    policy: Policy, ranges: "Iterable[tuple[int, Reading]]", start: float, step: float
+) -> float:
+    """The distance in metres between the footprint and the nearest scan point.
+
+    Args:
+        policy: how the signal is read.
+        ranges: the index of each beam, and its reading.
+        start: the angle of beam 0, in radians.
+        step: the angle between two beams, in radians.
+    """
     x, y, yaw = policy.sensor
-    reach = max(hypot(a - x, b - y) for a, b in policy.footprint)
-    top, bottom = (float(each) for each in exact(policy.scale).exact.as_integer_ratio())
-    least = limit = inf
-    for i, value in enumerate(ranges):
-        if value is None or value > limit or isinf(value):
+    top, bottom = _ratio(policy)
+    reach, least, limit = _reach(policy), inf, inf
+    for i, value in ranges:
+        if value is None or value > limit or value == inf:
             continue
+        if value == -inf:
+            return 0.0
         length = value * top / bottom  # Inlined `in_base`: faster for each beam.
         angle = start + step * i + yaw
         gap = _gap(x + length * cos(angle), y + length * sin(angle), policy.footprint)
         if gap < least:
             least = gap
-            # Longer beams cannot be nearer; 1 mm exceeds any rounding error.
-            limit = (least + reach + 1e-3) * bottom / top
+            limit = (least + reach) * bottom / top
     return least
+
+
+def _ratio(policy: Policy) -> "tuple[float, float]":
+    """The factor from the field's unit to metres: numerator and denominator."""
+    top, bottom = exact(policy.scale).exact.as_integer_ratio()
+    return float(top), float(bottom)
+
+
+def _reach(policy: Policy) -> float:
+    """The distance in metres from the sensor to the farthest corner.
+
+    A beam that is longer than a gap and this together is not nearer than that gap.
+    """
+    x, y, _ = policy.sensor
+    # 1 mm exceeds any rounding error.
+    return max(hypot(a - x, b - y) for a, b in policy.footprint) + 1e-3
 
 
 def _gap(x: float, y: float, corners: "Sequence[tuple[float, float]]") -> float:

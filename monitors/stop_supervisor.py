@@ -97,6 +97,9 @@ class StopSupervisor:
         """The requirements that were violated in earlier runs."""
         self._now = 0
         self._states: tuple[State, ...] = ()
+        """Those of the last call of `news`."""
+        self._computed: tuple[object, tuple[State, ...]] = None, ()
+        """What the last states were computed from, and these states."""
 
     # Input
 
@@ -156,6 +159,12 @@ class StopSupervisor:
 
     def states(self) -> "tuple[State, ...]":
         """The status of each requirement; `obligation_pending` counts messages since the tick."""
+        key = self._evaluator.changes, self._obligation_pending
+        if self._computed[0] != key:  # Most messages change nothing.
+            self._computed = key, self._compute_states()
+        return self._computed[1]
+
+    def _compute_states(self) -> "tuple[State, ...]":
         monitor = self._evaluator.monitor
         read = zip(monitor.statuses(), self._obligation_pending, monitor.certain.marks())
         return tuple(
@@ -174,6 +183,8 @@ class StopSupervisor:
     def news(self) -> "list[dict[str, Any]]":
         """The requirements whose status changed since the last call, as lines of a watch."""
         before, self._states = self._states, self.states()
+        if self._states is before:
+            return []
         return [
             {"type": "requirement", **state._asdict(), "time_ns": self._now}
             for state in self._states

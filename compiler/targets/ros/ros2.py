@@ -37,6 +37,7 @@ _TEMPLATES = {
     "package.xml": "package.xml.j2",
     "setup.py": "setup.py.j2",
     "setup.cfg": "setup.cfg.j2",
+    "{name}/__main__.py": "main.py.j2",
     "{name}/node.py": "node.py.j2",
     "launch/{name}.launch.py": "launch.py.j2",
     "config/{name}.yaml": "config.yaml.j2",

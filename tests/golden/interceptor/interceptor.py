@@ -149,7 +149,12 @@ class Node:
         """What it still waits for: ROS 2 has no master."""
         self.reason = "it was shut down"
         """The reason why ROS has ended the node."""
-        self.end: Callable[[], None] = lambda: None
+        self.ended = False
+        """Whether it was asked to end before it was there."""
+        self.end: Callable[[], None] = self._end_early
+
+    def _end_early(self) -> None:
+        self.ended = True
 
     def run(self, arguments: "list[str]") -> None:
         """Subscribe and publish until ROS is shut down."""
@@ -159,6 +164,8 @@ class Node:
         from rclpy.signals import SignalHandlerOptions
         from std_msgs.msg import Bool
 
+        if self.ended:
+            return
         rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
         node = rclpy.create_node("interceptor")
         wheels = node.create_publisher(Twist, OUTPUT, 10)
@@ -177,6 +184,8 @@ class Node:
         node.create_subscription(Twist, COMMAND, gate.hear_command, 1)
         # A steady clock: simulated or corrected time must not stop the watchdogs.
         node.create_timer(PERIOD, gate.ring, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        if self.ended:
+            end()
         try:
             rclpy.spin(node)
         finally:

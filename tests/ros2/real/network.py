@@ -10,7 +10,7 @@ import re
 import signal
 import subprocess
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,11 +20,14 @@ from tests import dds
 from tests.programs import DEBIANS_PATH
 from tests.ros2.real.environment import python
 
+WATCH = Path(__file__).parents[3] / "docs/watch.md"
+_PROFILE = re.compile(r"```xml\n(.*?)```", re.DOTALL)
+"""The settings with which `fretc watch dds` reads what Fast DDS 3 sends."""
 PATIENCE = 60.0
 """Seconds for what takes one, on a machine that may be busy."""
 NODE = "r1_monitor"
-_SHARED = re.compile(r"/dev/shm/fastrtps_(?!port70)\w+")
-"""Shared memory of Fast DDS, without the ports that all domains share."""
+_SHARED = re.compile(r"/dev/shm/(?:fastrtps|fastdds)_(?!port70)\w+")
+"""Shared memory of Fast DDS 2 and 3, without the ports that all domains share."""
 
 
 @dataclass(frozen=True)
@@ -39,6 +42,13 @@ class Program:
     def said(self) -> str:
         """What it has printed until now."""
         return self.errors.read_text()
+
+    @property
+    def hears_signals(self) -> bool:
+        """Whether it has a handler of its own for SIGTERM, as Python has for SIGINT."""
+        status = Path(f"/proc/{self.process.pid}/status").read_text()
+        (caught,) = re.findall(r"^SigCgt:\s*(\w+)$", status, re.MULTILINE)
+        return bool(int(caught, 16) >> signal.SIGTERM - 1 & 1)
 
     def end(self, number: int) -> int:
         """Send a signal, and wait for the end; its status."""
@@ -86,18 +96,23 @@ class Network:
     """A domain, and processes that end with it."""
 
     def __init__(self, folder: Path, number: int, release: str, stack: ExitStack) -> None:
+        self.release = release
         self._folder, self._stack, self._count = folder, stack, 0
         self._shared: set[Path] = set()
         """Files of shared memory, which a killed process leaves behind."""
         stack.callback(self._clean)
         self._python = str(python(release))
-        self.environment: Mapping[str, str] = {
+        self.environment = {
             "PATH": DEBIANS_PATH,
             "HOME": str(folder),
             "ROS_DOMAIN_ID": str(number),
             "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
             "ROS_LOG_DIR": str(folder / "log"),
         }
+        if release != "jazzy":  # Fast DDS 3: what the documentation asks for
+            (profile,) = _PROFILE.findall(WATCH.read_text(encoding="utf-8"))
+            (folder / "profile.xml").write_text(profile)
+            self.environment |= {"FASTDDS_DEFAULT_PROFILES_FILE": str(folder / "profile.xml")}
         self.of_fretc = dds.environment(number)
         """Where `fretc watch dds` sees the same domain."""
 
@@ -133,7 +148,7 @@ class Network:
 
     def monitor(self, package: Path, *words: str) -> Program:
         """The node of an emitted package, not configured yet."""
-        return self._program(package, "-m", f"{package.name}.node", *words)
+        return self._program(package, "-m", package.name, *words)
 
     def interceptor(self, package: Path, *words: str) -> Program:
         """The interceptor of an emitted package."""

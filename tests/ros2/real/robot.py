@@ -1,11 +1,13 @@
 """A robot on real ROS 2, which drives towards a wall; what the wheels hear moves it.
 
 It runs where rclpy is installed, without fretc. Each line of standard input is answered by
-`Robot.state`, in JSON: `go` begins; `away` puts it far from the wall; `stuck` and `free`: its
+`Robot.state`, in JSON. `go` begins; `away` puts it far from the wall; `stuck` and `free`: its
 brakes; `plans` and `rests`: its planner, which is `lossy` as best effort, else `reliable`; `hear`
-forgets what was heard so far; `second` publishes on the topic of stops, too, until it is `alone`;
-`change NODE TRANSITION` asks for a transition of a managed node, as `ros2 lifecycle set` does;
-`try NODE TRANSITION` does not wait for the answer.
+forgets what was heard so far. `simulate RATE` lets it publish a clock that is as many times as fast
+as real time, `back` sets this clock back by 100 s, and `log` adds what was published since.
+`second` publishes on the topic of stops, too, until it is `alone`; `crowd` publishes 200 more
+topics. `change NODE TRANSITION` asks for a transition of a managed node, as `ros2 lifecycle set`
+does; `try NODE TRANSITION` does not wait for the answer.
 """
 
 from __future__ import annotations
@@ -24,6 +26,9 @@ from nav_msgs.msg import Odometry  # type: ignore[import-not-found]
 from rclpy.clock import Clock, ClockType  # type: ignore[import-not-found]
 from rclpy.executors import SingleThreadedExecutor  # type: ignore[import-not-found]
 from rclpy.qos import qos_profile_sensor_data  # type: ignore[import-not-found]
+from rclpy.serialization import serialize_message  # type: ignore[import-not-found]
+from rclpy.time import Time  # type: ignore[import-not-found]
+from rosgraph_msgs.msg import Clock as ClockMessage  # type: ignore[import-not-found]
 from sensor_msgs.msg import LaserScan  # type: ignore[import-not-found]
 from std_msgs.msg import Bool, String  # type: ignore[import-not-found]
 
@@ -48,6 +53,7 @@ class Robot:
         self.odometry = node.create_publisher(Odometry, "/odom", 10)
         self.commands = node.create_publisher(Twist, "/cmd_vel", 10)
         self.second: Any = None
+        self.crowd: list[Any] = []
         node.create_subscription(Twist, "/cmd_vel_filtered", self.drive, 10)
         node.create_subscription(
             Bool, "/gwendolen_control", lambda said: self.stops.append(said.data), 10
@@ -55,8 +61,14 @@ class Robot:
         node.create_subscription(
             String, "/r1_monitor/verdicts", lambda m: self.lines.append(json.loads(m.data)), 100
         )
-        steady = Clock(clock_type=ClockType.STEADY_TIME)
-        node.create_timer(PERIOD, self.step, clock=steady)
+        self.steady = Clock(clock_type=ClockType.STEADY_TIME)
+        self.timer = node.create_timer(PERIOD, self.step, clock=self.steady)
+        self.clock: Any = None
+        """The publisher of simulated time."""
+        self.now = 10**12
+        """Simulated time in nanoseconds."""
+        self.log: list[tuple[str, str, int, str]] = []
+        """In simulated time: topic, type, time, and the payload in hexadecimal digits."""
         step = 2 * math.pi / BEAMS
         self.cosines = [math.cos(-math.pi + i * step) for i in range(BEAMS)]
         self.scan = LaserScan(angle_min=-math.pi, angle_increment=step, range_min=0.02)
@@ -78,14 +90,14 @@ class Robot:
         if not self.stuck:
             self.speed = self.wanted
         self.clearance = max(WALL, self.clearance - self.speed * PERIOD)
-        stamp = self.node.get_clock().now().to_msg()
+        stamp = self.time()
         self.scan.header.stamp = stamp
         self.scan.ranges = self.ranges()
-        self.scans.publish(self.scan)
+        self.publish(self.scans, self.scan)
         odometry = Odometry()
         odometry.header.stamp = stamp
         odometry.twist.twist.linear.x = self.speed
-        self.odometry.publish(odometry)
+        self.publish(self.odometry, odometry)
         if self.plans:
             command = Twist()
             command.linear.x = SPEED
@@ -93,6 +105,31 @@ class Robot:
         if self.second:
             self.second.publish(Bool(data=False))
         self.count += 1
+
+    def time(self) -> Any:
+        """The present time; one step later by a simulated clock."""
+        if self.clock is None:
+            return self.node.get_clock().now().to_msg()
+        self.now += round(PERIOD * 1e9)
+        stamp = Time(nanoseconds=self.now).to_msg()
+        self.clock.publish(ClockMessage(clock=stamp))
+        return stamp
+
+    def publish(self, publisher: Any, message: Any) -> None:
+        publisher.publish(message)
+        if self.clock is not None:
+            kind = type(message)
+            package = kind.__module__.partition(".")[0]
+            payload = serialize_message(message).hex()
+            self.log.append(
+                (publisher.topic_name, f"{package}/msg/{kind.__name__}", self.now, payload)
+            )
+
+    def simulate(self, rate: float) -> None:
+        """Publish a clock that many times as fast as real time."""
+        self.clock = self.node.create_publisher(ClockMessage, "/clock", 10)
+        self.node.destroy_timer(self.timer)
+        self.timer = self.node.create_timer(PERIOD / rate, self.step, clock=self.steady)
 
     def state(self) -> dict[str, Any]:
         """All that a test asks for."""
@@ -142,8 +179,15 @@ class Robot:
             self.commands = self.node.create_publisher(Twist, "/cmd_vel", qos)
         elif word == "hear":
             self.wheels, self.stops = [], []
+        elif word == "simulate":
+            self.simulate(float(*more))
+        elif word == "back":
+            self.now -= 100 * 10**9
         elif word == "second":
             self.second = self.node.create_publisher(Bool, "/gwendolen_control", 10)
+        elif word == "crowd":
+            for i in range(200):
+                self.crowd.append(self.node.create_publisher(String, f"/crowd_{i}", 10))
         elif word == "alone":
             second, self.second = self.second, None
             self.node.destroy_publisher(second)
@@ -162,7 +206,8 @@ def main() -> None:
     threading.Thread(target=executor.spin, daemon=True).start()
     for line in sys.stdin:
         done = robot.obey(*line.split())
-        print(json.dumps({"done": done, **robot.state()}), flush=True)
+        log = robot.log if line == "log\n" else []
+        print(json.dumps({"done": done, "log": log, **robot.state()}), flush=True)
 
 
 if __name__ == "__main__":

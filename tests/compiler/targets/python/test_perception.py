@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import ast
 import math
-from collections.abc import Sequence
+from array import array
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cache
 from types import SimpleNamespace
@@ -180,22 +181,53 @@ truths_of_fields = st.recursive(
     st.sampled_from(["min", "max"]),
     st.lists(doubles.map(float), max_size=6),
     st.tuples(doubles, doubles),
+    st.sampled_from([tuple, list, lambda values: array("d", values)]),
     st.booleans(),
 )
 def test_a_whole_array_at_once_gives_what_its_elements_give(
-    signal: Any, valid: Any, reduce: str, values: list[float], beside: Any, single: bool
+    signal: Any,
+    valid: Any,
+    reduce: str,
+    values: list[float],
+    beside: Any,
+    container: Callable[[list[float]], Sequence[float]],
+    single: bool,
 ) -> None:
-    array = replace(
+    whole = replace(
         signal, path=path("/a.field[:]"), reduce=Reduce(reduce), valid=valid, max_age=None
     )
     live = live_module()
-    found = eval(perception._policy(policy(array)), vars(live))
+    found = eval(perception._policy(policy(whole)), vars(live))
     assert found.quick is not None
     least, most = map(float, beside)
-    message = SimpleNamespace(field=tuple(values), least=least, most=most)
+    message = SimpleNamespace(field=container(values), least=least, most=most)
     one = live.sample(found, message, single)
     other = live.sample(found._replace(quick=None), message, single)
     assert (one, type(one)) == (other, type(other))
+
+
+READINGS = st.sampled_from(["drop", "far", "near", "unknown"])
+
+
+@pytest.mark.slow
+@examples(12)
+@given(
+    st.lists(st.floats(0, 10, width=32) | st.sampled_from([math.inf, -math.inf, math.nan])),
+    st.tuples(READINGS, READINGS, READINGS, READINGS),
+    st.floats(-3.2, 3.2),
+    st.sampled_from([0.01, 0.5]),
+    st.sampled_from(["1", "1/1000", "381/1250"]),
+)
+def test_a_clearance_of_near_beams_is_that_of_all(
+    ranges: list[float], invalid: Any, start: float, step: float, scale: str
+) -> None:
+    signal = declare(SCAN).signals["clearance"]
+    live = live_module()
+    found = eval(perception._policy(policy(signal)), vars(live))
+    found = found._replace(invalid=invalid, scale=scale)
+    scan = {"angle_min": start, "angle_increment": step, "range_min": 0.1, "range_max": 9.0}
+    message = SimpleNamespace(ranges=array("f", ranges), **scan)
+    assert live.sample(found, message) == live.sample(found._replace(quick=None), message)
 
 
 @pytest.mark.slow

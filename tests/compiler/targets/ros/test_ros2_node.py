@@ -8,6 +8,9 @@ from __future__ import annotations
 import math
 import os
 import signal
+import subprocess
+import sys
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -383,8 +386,6 @@ def own_signals() -> Any:
 def started(robot: Robot, seconds: float, action: Any) -> tuple[int, Any]:
     """`main` in a process of the world, which is activated, and to which something happens."""
     process = robot.world.process()
-    module = process.load(robot.package, "node")
-    module.FLUSH = 0.0
 
     def activate() -> None:
         (node,) = process.nodes
@@ -394,7 +395,10 @@ def started(robot: Robot, seconds: float, action: Any) -> tuple[int, Any]:
 
     robot.world.after(10**8, None, activate)
     robot.world.after(round(seconds * 1e9), None, lambda: action(process))
-    status: int = module.main()
+    with process.importing(robot.package):
+        node: Any = import_module(f"{robot.package.name}.node")
+        node.FLUSH = 0.0
+        status: int = import_module(f"{robot.package.name}.__main__").main()
     return status, process
 
 
@@ -406,6 +410,44 @@ def test_a_signal_ends_the_node_with_a_request_to_stop(package: Path, number: in
     assert status == 0
     assert robot.stops[-2:] == [False, True]
     assert not process.is_running
+
+
+@pytest.mark.slow
+def test_without_ros_it_prints_what_it_needs(package: Path) -> None:
+    ran = subprocess.run(
+        [sys.executable, "-S", "-m", package.name],
+        env={"PYTHONPATH": str(package)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert ran.returncode == 2
+    assert ran.stderr.startswith("r1_monitor: it needs ROS 2 and its Python packages: No module")
+
+
+LOADING = """
+import sys
+print("loading", flush=True)
+sys.stdin.readline()
+raise ImportError("of the test")
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_while_ros_is_loaded_is_only_noted(
+    package: Path, tmp_path: Path, number: int
+) -> None:
+    (tmp_path / "diagnostic_msgs.py").write_text(LOADING)  # the first that is imported
+    pipes: dict[str, Any] = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE)
+    words, path = (sys.executable, "-m", package.name), {"PYTHONPATH": f"{tmp_path}:{package}"}
+    with subprocess.Popen(words, env=path, text=True, **pipes) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "loading\n"
+        process.send_signal(number)
+        said = process.communicate("\n")[1]
+    assert process.returncode == 2
+    assert said == "r1_monitor: it needs ROS 2 and its Python packages: of the test\n"
 
 
 @pytest.mark.usefixtures("own_signals")

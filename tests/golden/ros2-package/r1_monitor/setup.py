@@ -25,7 +25,7 @@ setup(
     license="0BSD",
     entry_points={
         "console_scripts": [
-            f"monitor = {NAME}.node:main",
+            f"monitor = {NAME}.__main__:main",
             f"interceptor.py = {NAME}.interceptor:program",
         ]
     },

@@ -7,7 +7,6 @@ The node decides nothing: perception.py says what is published, by the monitor o
 an active node lets the robot go: the last that it publishes, however it ends, is a stop.
 """
 
-import signal
 import sys
 import time
 
@@ -229,12 +228,8 @@ def spin(executor, node):
         node.get_logger().error("a transition was refused: the node's state does not have it")
 
 
-def main():
-    """Run the node; return the exit status."""
-    signals = []
-    for number in (signal.SIGINT, signal.SIGTERM):
-        # A signal is only noted: whatever it interrupts, nothing waits for a lock.
-        signal.signal(number, lambda number, frame: signals.append(number))
+def run(signals):
+    """Run the node until `signals`, to which a handler adds, has one; return the exit status."""
     node, status = None, 0
     try:
         rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
@@ -254,7 +249,3 @@ def main():
             node.close()
         rclpy.shutdown()
     return status
-
-
-if __name__ == "__main__":
-    sys.exit(main())
