@@ -241,7 +241,7 @@ def _block(
         csv.Error, KeyError, ValueError: the lines are ambiguous.
     """
     width, has_tick = len(header), "tick" in header and "tick" not in names
-    codes = None if has_tick else _digits(part, width)
+    codes = None if has_tick else _at_once(part, width)
     if codes:
         named = dict(zip(header, codes))
         rows = len(codes[0])
@@ -257,19 +257,40 @@ def _block(
     return _Block(table.line_num, tick, piece)
 
 
-def _digits(part: str, width: int) -> "list[bytes] | None":
-    """The codes of every column, if each cell is one digit: 0 or 1."""
-    text = part.encode().replace(b"\r\n", b"\n")
+def _at_once(part: str, width: int) -> "list[bytes] | None":
+    """The codes of every column, if each cell is 0, 1, true, false or empty, without quotes."""
+    text = part.encode()
+    text = text.replace(b"\r\n", b"\n") if b"\r" in text else text
     text = text if text.endswith(b"\n") else text + b"\n"
+    if b"2" in text:
+        return None
+    return _digits(text, width) or _digits(_as_digits(text), width)
+
+
+def _as_digits(text: bytes) -> bytes:
+    """The text with a digit in place of each word, and 2 in each empty cell between commas.
+
+    A cell becomes one digit only if it was this word, this digit, or empty: what has been put in
+    for a word is in no word.
+    """
+    text = text.lower().replace(b"true", b"1").replace(b"false", b"0")
+    for _ in range(2):  # the second of two empty cells shares a comma with the first
+        text = text.replace(b",,", b",2,")
+    text = text.replace(b",\n", b",2\n").replace(b"\n,", b"\n2,")
+    return b"2" + text if text.startswith(b",") else text
+
+
+def _digits(text: bytes, width: int) -> "list[bytes] | None":
+    """The codes of every column, if each cell is one digit: 0, 1 or 2."""
     cells, separators = text[::2], text[1::2]
     rows = len(separators) // width
-    if separators != (b"," * (width - 1) + b"\n") * rows or cells.strip(b"01"):
+    if separators != (b"," * (width - 1) + b"\n") * rows or cells.strip(b"012"):
         return None
     codes = cells.translate(_CODES)
     return [codes[index::width] for index in range(width)]
 
 
-_CODES = bytes.maketrans(b"01", b"\0\1")
+_CODES = bytes.maketrans(b"012", b"\0\1\2")
 
 
 def _codes(words: "Sequence[str]") -> bytes:
