@@ -115,9 +115,8 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         monitor, path = Path(folder, "monitor.py"), Path(folder, "table")
         monitor.write_text(text(requirement(SENTENCE)), encoding="utf-8")
-        print(
-            f"{'':18} {'rows':>9} {'engine':>8} {'CPU':>8} {'x csv.reader':>13} {'limit':>6} {'memory':>9}"
-        )
+        print(f"{'':18} {'rows':>9} {'engine':>8} {'CPU':>8} {'x csv.reader':>13}", end="")
+        print(f" {'limit':>6} {'memory':>9}")
         for name, lines in TABLES.items():
             for rows in options.rows:
                 path.write_text("\n".join(lines(rows)) + "\n", encoding="utf-8")
