@@ -262,31 +262,22 @@ def _at_once(part: str, width: int) -> "list[bytes] | None":
     text = part.encode()
     text = text.replace(b"\r\n", b"\n") if b"\r" in text else text
     text = text if text.endswith(b"\n") else text + b"\n"
-    if b"2" in text:
+    cells = width * text.count(b"\n")
+    separators, values = (b"," * (width - 1) + b"\n") * (cells // width), b"01"
+    if len(text) != 2 * cells:
+        # No word arises from what is put in for another: so no other cell becomes one digit.
+        text = text.lower().replace(b"true", b"1").replace(b"false", b"0")
+        if text.translate(None, b"01") != separators:
+            return None
+        text = text.replace(b"\n", b",")
+        text = b"2" + text if text.startswith(b",") else text
+        for _ in range(2):  # the second of two empty cells shares a comma with the first
+            text = text.replace(b",,", b",2,")
+        separators, values = b"," * cells, b"012"
+    digits = text[::2]
+    if text[1::2] != separators or digits.strip(values):
         return None
-    return _digits(text, width) or _digits(_as_digits(text), width)
-
-
-def _as_digits(text: bytes) -> bytes:
-    """The text with a digit in place of each word, and 2 in each empty cell between commas.
-
-    A cell becomes one digit only if it was this word, this digit, or empty: what has been put in
-    for a word is in no word.
-    """
-    text = text.lower().replace(b"true", b"1").replace(b"false", b"0")
-    for _ in range(2):  # the second of two empty cells shares a comma with the first
-        text = text.replace(b",,", b",2,")
-    text = text.replace(b",\n", b",2\n").replace(b"\n,", b"\n2,")
-    return b"2" + text if text.startswith(b",") else text
-
-
-def _digits(text: bytes, width: int) -> "list[bytes] | None":
-    """The codes of every column, if each cell is one digit: 0, 1 or 2."""
-    cells, separators = text[::2], text[1::2]
-    rows = len(separators) // width
-    if separators != (b"," * (width - 1) + b"\n") * rows or cells.strip(b"012"):
-        return None
-    codes = cells.translate(_CODES)
+    codes = digits.translate(_CODES)
     return [codes[index::width] for index in range(width)]
 
 

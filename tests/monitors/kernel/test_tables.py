@@ -271,6 +271,8 @@ def spoil(table: list[list[str]], ends: list[str], choose: random.Random) -> Non
 @example(("p,q\n1,0\n2,1\n", ("p", "q")), 64)  # a digit that is no value
 @example(("p,q\n1,\n2,1\n", ("p", "q")), 64)
 @example(("p,q\n1,0\n3,1\n", ("p", "q")), 64)
+@example(("p,q\n1,0\n1;0\n", ("p", "q")), 64)  # another separator
+@example(("p,q\n1\n0,1,0\n", ("p", "q")), 64)  # as many cells as two rows have
 @example(("p,q\n1,\n/,True\n", ("p", "q")), 64)
 @example(("p,q\n,\n,,\n", ("p", "q")), 64)  # a row has more cells than the header
 @example(("p,n,q\n,,\n,true,\n,,1\n", ("p", "q")), 1)
