@@ -191,7 +191,8 @@ def _evidence(
     )
     outcome = judgement.outcome
     signals = signals_of(declarations, requirement.propositions)
-    answers = tuple((at(t), at(k)) for t, k in outcome.answers)
+    pairs = outcome.answers[:]  # the tuple is made, which `states` reads again
+    answers = tuple((at(t), at(k)) for t, k in pairs)
     evidence = RunResult(
         run=recording.name,
         requirement=monitor.REQUIREMENTS[0].id,

@@ -29,8 +29,9 @@ from fretish.diagnostics.source import Span
 
 _MOST, _MOST_BYTES = 4096, 2**22
 """The most messages, and the most bytes of them, that are decoded at once."""
-_ENOUGH = 1024
-"""The number of messages that are decoded at once; fewer wait for others of their stream."""
+_ENOUGH, _ENOUGH_BYTES = 1024, 2**18
+"""So many messages, or so many bytes of them, are decoded at once; fewer wait for others of their
+stream."""
 
 
 @dataclass(slots=True)
@@ -198,7 +199,7 @@ class Columns:
         if not column.bound:
             column.logs.frombytes(logs.tobytes())
             return
-        if len(messages) >= _ENOUGH or len(messages.data) >= _MOST_BYTES:
+        if len(messages) >= _ENOUGH or messages.payloads.sizes.sum() >= _ENOUGH_BYTES:
             self._settle(column)
             self._read(column, stream, logs, messages.publishes, messages.payloads)
             return

@@ -241,7 +241,7 @@ def _block(
         csv.Error, KeyError, ValueError: the lines are ambiguous.
     """
     width, has_tick = len(header), "tick" in header and "tick" not in names
-    codes = None if has_tick else _digits(part, width)
+    codes = None if has_tick else _at_once(part, width)
     if codes:
         named = dict(zip(header, codes))
         rows = len(codes[0])
@@ -257,19 +257,31 @@ def _block(
     return _Block(table.line_num, tick, piece)
 
 
-def _digits(part: str, width: int) -> "list[bytes] | None":
-    """The codes of every column, if each cell is one digit: 0 or 1."""
-    text = part.encode().replace(b"\r\n", b"\n")
+def _at_once(part: str, width: int) -> "list[bytes] | None":
+    """The codes of every column, if each cell is 0, 1, true, false or empty, without quotes."""
+    text = part.encode()
+    text = text.replace(b"\r\n", b"\n") if b"\r" in text else text
     text = text if text.endswith(b"\n") else text + b"\n"
-    cells, separators = text[::2], text[1::2]
-    rows = len(separators) // width
-    if separators != (b"," * (width - 1) + b"\n") * rows or cells.strip(b"01"):
+    cells = width * text.count(b"\n")
+    separators, values = (b"," * (width - 1) + b"\n") * (cells // width), b"01"
+    if len(text) != 2 * cells:
+        # No word arises from what is put in for another: so no other cell becomes one digit.
+        text = text.lower().replace(b"true", b"1").replace(b"false", b"0")
+        if text.translate(None, b"01") != separators:
+            return None
+        text = text.replace(b"\n", b",")
+        text = b"2" + text if text.startswith(b",") else text
+        for _ in range(2):  # the second of two empty cells shares a comma with the first
+            text = text.replace(b",,", b",2,")
+        separators, values = b"," * cells, b"012"
+    digits = text[::2]
+    if text[1::2] != separators or digits.strip(values):
         return None
-    codes = cells.translate(_CODES)
+    codes = digits.translate(_CODES)
     return [codes[index::width] for index in range(width)]
 
 
-_CODES = bytes.maketrans(b"01", b"\0\1")
+_CODES = bytes.maketrans(b"012", b"\0\1\2")
 
 
 def _codes(words: "Sequence[str]") -> bytes:

@@ -194,6 +194,7 @@ def row_by_row(text: str, names: tuple[str, ...]) -> Rows | str:
 
 
 DIGITS = ("0", "1")
+PLAIN = ("", "", "0", "1", "true", "False", "TRUE", "false")
 WORDS = ("", "0", "1", "true", "FALSE", " 1", "0 ", "\u2003", '"1"', '""', '" true"')
 WRONG = (
     "2",
@@ -208,6 +209,14 @@ WRONG = (
     '"\n',
     "\0",
     "é",
+    "true1",
+    "0true",
+    "truefalse",
+    "tfalserue",
+    "tru",
+    "f1alse",
+    "\u017false",
+    "fal\u017fe",
     "\u0661",
     "a,b",
 )
@@ -222,7 +231,7 @@ def csv_tables(draw: st.DrawFn) -> tuple[str, tuple[str, ...]]:
     header = [*names, *choose.choice([(), (), ("tick",), ("n",), ("tick", "n", "n")])]
     choose.shuffle(header)
     header = list(dict.fromkeys(header)) or ["n"]
-    cells = choose.choice((DIGITS, DIGITS, WORDS, (*WORDS, "0\n0")))
+    cells = choose.choice((DIGITS, PLAIN, PLAIN, WORDS, (*WORDS, "0\n0")))
     end = choose.choice(ENDS[:5])
     first = choose.choice((0, 0, 7, -3, 98, 10**18 - 5))
     table = [[choose.choice(cells) for _ in header] for _ in range(choose.randrange(60))]
@@ -259,6 +268,15 @@ def spoil(table: list[list[str]], ends: list[str], choose: random.Random) -> Non
 @example(("p\n0\n\n", ("p",)), 64)
 @example(("p,q\n\n1,true\n1,2\n", ("p", "q")), 1)  # an empty line counts in what comes after it
 @example(("p,q\n1,0\n10,\n", ("p", "q")), 64)  # as long as two digits
+@example(("p,q\n1,0\n2,1\n", ("p", "q")), 64)  # a digit that is no value
+@example(("p,q\n1,\n2,1\n", ("p", "q")), 64)
+@example(("p,q\n1,0\n3,1\n", ("p", "q")), 64)
+@example(("p,q\n1,0\n1;0\n", ("p", "q")), 64)  # another separator
+@example(("p,q\n1\n0,1,0\n", ("p", "q")), 64)  # as many cells as two rows have
+@example(("p,q\n1,\n/,True\n", ("p", "q")), 64)
+@example(("p,q\n,\n,,\n", ("p", "q")), 64)  # a row has more cells than the header
+@example(("p,n,q\n,,\n,true,\n,,1\n", ("p", "q")), 1)
+@example(("p\ntrue\n\nfalse\n", ("p",)), 64)
 @example(("tick,p\n" + "9" * 18 + ",1\n" + "1" + "0" * 18 + ",1\n", ("p",)), 64)
 @example(('p,q\n1,"0\n"\n1,0\n1,2\n', ("p", "q")), 3)  # a value that goes on in the next piece
 def test_pieces_are_read_as_they_are_row_by_row(
@@ -291,4 +309,16 @@ def test_digits_are_not_even_split() -> None:
         assert rows("p,n,q\n" + "0,0,1\r\n" * 9 + "1,1,1", "p", "q") == [
             *[(False, True)] * 9,
             (True, True),
+        ]
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+def test_words_and_empty_cells_are_not_split_either(end: str) -> None:
+    lines = ["p,n,m,q", ",1,0,True", "FALSE,,,", ",,,", "1,0,false,0"]
+    with mock.patch.object(tables, "_codes", side_effect=AssertionError):
+        assert rows(end.join(lines), "p", "q") == [
+            (None, True),
+            (False, None),
+            (None, None),
+            (True, False),
         ]
