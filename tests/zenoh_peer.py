@@ -95,8 +95,8 @@ class Publisher:
             self.token.undeclare()
 
 
-def play(path, start, end):
-    """A part of a log, as it went, in seconds from its beginning."""
+def play(path, start, end, skip):
+    """A part of a log, as it went, in seconds from its beginning; a message may be lost."""
     from mcap.reader import make_reader
     begin, first = None, None
     with open(path, "rb") as stream:
@@ -107,7 +107,10 @@ def play(path, start, end):
                 continue
             begin = begin or time.monotonic() - at
             time.sleep(max(0, begin + at - time.monotonic()))
-            publishers[channel.topic].send(message.data, time=message.log_time)
+            publisher = publishers[channel.topic]
+            if publisher.number + 1 == skip:
+                publisher.number += 1
+            publisher.send(message.data, time=message.log_time)
 
 
 for line in sys.stdin:
@@ -137,7 +140,7 @@ for line in sys.stdin:
         case "drop":
             tokens.pop(asked["key"]).undeclare()
         case "play":
-            play(*asked["part"])
+            play(*asked["part"], asked["skip"])
     print(do, flush=True)
 '''
 

@@ -4,11 +4,9 @@ import json
 import os
 import signal
 import socket
-from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from threading import Thread
-from typing import Any
 
 import pytest
 
@@ -32,7 +30,6 @@ from tests.zenoh_peer import (
     NO_HASH,
     STRING,
     Listened,
-    Peer,
     digest,
     free_port,
     listened,
@@ -42,6 +39,7 @@ from tests.zenoh_peer import (
 
 ROOT = Path(__file__).parents[4]
 LOG = ROOT / "traces/mission-seed15.mcap"
+TYPES = {"/scan": "sensor_msgs/msg/LaserScan", "/odom": "nav_msgs/msg/Odometry"}
 HASH = digest("std_msgs/msg/String")
 KEY = f"0/x/{STRING}/{HASH}"
 
@@ -163,7 +161,7 @@ def test_simulated_time_is_reported_once() -> None:
 
 
 @each(
-    ("type_", "digest_", "why"),
+    "case",
     [
         ("px4_msgs::msg::dds_::VehicleStatus_", HASH, "not a type of ROS 2 itself"),
         (STRING, HASH.replace("df", "fd"), "the type hash differs"),
@@ -171,9 +169,8 @@ def test_simulated_time_is_reported_once() -> None:
         ("strange", "1", "not a type of ROS 2 itself"),
     ],
 )
-def test_messages_without_definition_are_recorded_and_reported(
-    type_: str, digest_: str, why: str
-) -> None:
+def test_messages_without_definition_are_recorded_and_reported(case: tuple[str, str, str]) -> None:
+    type_, digest_, why = case
     with peer() as robot, listened(robot.locator) as found:
         opened(found)
         robot.publish("x", type=type_, hash=digest_)
@@ -256,18 +253,155 @@ def test_a_wrong_domain_is_one_error(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_lost_peer_is_tried_again() -> None:
-    with listened_later() as (found, port):
+    """What was sent meanwhile is unknown; what a new publisher sent before is known to be lost."""
+    port = free_port()
+    with peer(port) as robot:
+        found = Listened(robot.locator)
+        opened(found)
+        robot.publish("x", gid="aa" * 16)
+        robot.send("x", b"1")
+        found.wait("it comes", lambda: found.payloads == [b"1"])
+    try:
+        found.wait("it is lost", lambda: found.of(ConnectionLost))
         with peer(port) as robot:
-            robot.publish("x")
-            robot.send("x", b"1")
-        found.wait("it is back", lambda: found.of(Reconnected))
-    (lost,), (back,) = found.of(ConnectionLost), found.of(Reconnected)
+            robot.publish("x", gid="aa" * 16)
+            found.wait("it is back", lambda: found.of(Reconnected))
+            robot.send("x", b"5", number=5)
+            robot.send("x", b"6", number=6)
+            found.wait("they come", lambda: found.payloads == [b"1", b"5", b"6"])
+            assert found.codes == []
+    finally:
+        found.source.close()
+        found.thread.join(10)
+    (lost,), (back,), (missed,) = found.of(ConnectionLost), found.of(Reconnected), found.of(Missed)
     assert lost.problem.code is Code.ROBOT_NOT_REACHED
-    (before,) = [item for item in found.of(Arrival) if item.payload == b"0"]
-    assert before.log_time < lost.since
-    assert lost.since <= back.since < back.until
-    assert Code.PUBLISHER_GONE not in found.codes
+    first, second, _ = found.of(Arrival)
+    assert first.log_time < lost.since <= back.since < back.until
+    assert (missed.since, missed.until < second.log_time, missed.count) == (missed.since, True, 3)
+    assert first.log_time < missed.since <= lost.since
 
 
-def listened_later() -> Any:
-    raise NotImplementedError
+def test_a_peer_that_no_longer_answers_is_lost() -> None:
+    with peer() as robot, listened(robot.locator) as found:
+        opened(found)
+        robot.publish("x")
+        robot.send("x", b"1")
+        found.wait("it comes", lambda: found.payloads)
+        robot.process.send_signal(signal.SIGSTOP)
+        try:
+            found.wait("it is lost", lambda: found.of(ConnectionLost))
+        finally:
+            robot.process.send_signal(signal.SIGCONT)
+        found.wait("it is back", lambda: found.of(Reconnected))
+        robot.send("x", b"2")
+        found.wait("the next comes", lambda: found.payloads[-1:] == [b"2"])
+    (lost,) = found.of(ConnectionLost)
+    assert "has not answered for 3 s" in lost.problem.message
+    assert found.codes == []
+
+
+def test_a_closed_watch_ends_although_the_peer_does_not_answer() -> None:
+    with peer() as robot:
+        with listened(robot.locator) as found:
+            opened(found)
+            robot.process.send_signal(signal.SIGSTOP)
+        assert not found.thread.is_alive()
+        robot.process.send_signal(signal.SIGCONT)
+
+
+# Strangers
+
+
+def test_strange_keys_and_tokens_are_ignored() -> None:
+    with peer() as robot, listened(robot.locator) as found:
+        opened(found)
+        for key in ("**", "0/**", "0/x/**", "0/x/*/*", f"0/x/{STRING}/*", "0/*/a/b", "0/x/$*/b"):
+            robot.ask("put", key=key, data=b"wild")
+        robot.ask("delete", key=KEY)
+        for name in (token("n" * 300), token(kind="MS"), token().replace("/MP/", "/mp/")):
+            robot.ask("token", key=name)
+        robot.publish("x")
+        robot.send("x", b"1")
+        found.wait("it comes", lambda: b"1" in found.payloads)
+    assert found.payloads == [b"1"]
+    assert found.codes == [Code.PUBLISHER_NOT_READ]
+
+
+def test_many_types_of_a_topic_are_not_read() -> None:
+    with peer() as robot, listened(robot.locator) as found:
+        opened(found)
+        for number in range(zenoh.MOST_KINDS + 5):
+            robot.ask("put", key=f"0/x/T{number}/h", data=b"%d" % number)
+        found.wait("it is said", lambda: Code.PUBLISHER_NOT_READ in found.codes)
+        assert len({item.channel for item in found.of(Arrival)}) == zenoh.MOST_KINDS
+    assert found.codes.count(Code.PUBLISHER_NOT_READ) == 1
+
+
+def test_a_message_of_more_than_64_mib_is_missed() -> None:
+    with peer() as robot, listened(robot.locator) as found:
+        opened(found)
+        robot.publish("x")
+        robot.send("x", b"1")
+        robot.send("x", b"\0" * (2**26 + 1))
+        robot.send("x", b"3")
+        found.wait("the next comes", lambda: len(found.payloads) > 1)
+    assert found.payloads == [b"1", b"3"]
+    assert [item.count for item in found.of(Missed)] == [1]
+
+
+def test_a_flood_is_limited_and_what_is_dropped_is_counted(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The watch reads nothing until all is sent."""
+    count, most = 2000, 50
+    with peer() as robot:
+        source = zenoh.Zenoh(robot.locator)
+        source._mailbox = Mailbox(most)
+        arrivals = source.arrivals(["/x"])
+        items: list[object] = []
+        while not any(isinstance(item, Opened) for item in items):
+            items.append(next(arrivals))
+        robot.publish("x")
+        robot.ask("flood", name="x", data=b"x", count=count)
+        until("all are there", lambda: next(iter(source._numbers._last.values())).number == count)
+        robot.send("x", b"last")
+        while not (isinstance(items[-1], Arrival) and items[-1].payload == b"last"):
+            items.append(next(arrivals))
+        source.close()
+        arrivals.close()  # type: ignore[attr-defined]
+    came = [item for item in items if isinstance(item, Arrival)]
+    missed = [item for item in items if isinstance(item, Missed)]
+    assert len(came) + sum(item.count for item in missed) == count + 1
+    assert len(came) <= most + 1
+
+
+# Live verdicts equal those of the audit
+
+
+@pytest.mark.parametrize("lost", [False, True])
+def test_the_watch_and_the_audit_agree(fretc: Fretc, tmp_path: Path, lost: bool) -> None:
+    """A part of a mission, in real time: a stop, and the robot that stands.
+
+    A lost message makes its time unknown, and the run satisfies nothing.
+    """
+    requirements = ["--requirements", str(ROOT / "requirements/r1.fret")]
+    environment = {key: value for key, value in os.environ.items() if key != "ROS_DOMAIN_ID"}
+    with peer() as robot:
+        words = ("--record", "run.mcap", "--evidence", "live.json")
+        run = Watched(environment, tmp_path, "zenoh", robot.locator, *requirements, *words)
+        try:
+            until("it is opened", lambda: any(x["type"] == "opened" for x in run.lines), 30)
+            for topic, type_ in TYPES.items():
+                robot.publish(topic, topic, type=mangled(type_), hash=digest(type_))
+            robot.ask("play", part=[str(LOG), 5.0, 6.5], skip=7 if lost else 0)
+            until("it was triggered", lambda: any(line.get("triggered_ns") for line in run.lines))
+            status = run.end()
+        finally:
+            run.close()
+    again = fretc("audit", "run.mcap", *requirements, "-o", "audit.json")
+    assert again.status == status, (again.err, run.lines)
+    assert (tmp_path / "audit.json").read_bytes() == (tmp_path / "live.json").read_bytes()
+    (result,) = json.loads((tmp_path / "audit.json").read_text())["results"]
+    assert run.verdicts() == {"R1": result["verdict"]}
+    assert result["triggers"]
+    assert any(line["type"] == "missed" for line in run.lines) == lost
