@@ -129,6 +129,7 @@ DOORS = {
     "lz4": {"fretc/logs/mcap/container.py"},
     "wcwidth": {"fretc/terminal/screen.py"},
     "cyclonedds": {"fretc/watch/sources/dds_domain.py", "fretc/watch/sources/dds_types.py"},
+    "zenoh": {"fretc/watch/sources/zenoh/session.py"},
     "websockets": {"fretc/watch/sources/foxglove.py"},
     "foxglove": {"fretc/watch/publishing/foxglove_server.py"},
     "click": CLICK,

@@ -10,16 +10,17 @@ from threading import Thread
 
 import pytest
 
-from fretc.watch.sources import zenoh
 from fretc.watch.sources.mailbox import Mailbox
 from fretc.watch.sources.source import (
     Arrival,
     ConnectionLost,
+    Idle,
     Missed,
     Opened,
     Problem,
     Reconnected,
 )
+from fretc.watch.sources.zenoh import zenoh
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.command import Fretc
 from tests.each import each
@@ -37,7 +38,7 @@ from tests.zenoh_peer import (
     peer,
 )
 
-ROOT = Path(__file__).parents[4]
+ROOT = Path(__file__).parents[5]
 LOG = ROOT / "traces/mission-seed15.mcap"
 TYPES = {"/scan": "sensor_msgs/msg/LaserScan", "/odom": "nav_msgs/msg/Odometry"}
 HASH = digest("std_msgs/msg/String")
@@ -165,7 +166,7 @@ def test_simulated_time_is_reported_once() -> None:
     [
         ("px4_msgs::msg::dds_::VehicleStatus_", HASH, "not a type of ROS 2 itself"),
         (STRING, HASH.replace("df", "fd"), "the type hash differs"),
-        ("sensor_msgs::msg::dds_::CameraInfo_", NO_HASH, "no type hash"),
+        ("sensor_msgs::msg::dds_::Range_", NO_HASH, "no type hash"),
         ("strange", "1", "not a type of ROS 2 itself"),
     ],
 )
@@ -315,7 +316,7 @@ def test_a_closed_watch_ends_although_the_peer_does_not_answer() -> None:
 def test_strange_keys_and_tokens_are_ignored() -> None:
     with peer() as robot, listened(robot.locator) as found:
         opened(found)
-        for key in ("**", "0/**", "0/x/**", "0/x/*/*", f"0/x/{STRING}/*", "0/*/a/b", "0/x/$*/b"):
+        for key in ("**", "0/**", "0/x/**", "0/x/*/*", f"0/x/{STRING}/*", "0/*/a/b", "0/x/a$*c/b"):
             robot.ask("put", key=key, data=b"wild")
         robot.ask("delete", key=KEY)
         for name in (token("n" * 300), token(kind="MS"), token().replace("/MP/", "/mp/")):
@@ -364,11 +365,12 @@ def test_a_flood_is_limited_and_what_is_dropped_is_counted(
         robot.publish("x")
         robot.ask("flood", name="x", data=b"x", count=count)
         until("all are there", lambda: next(iter(source._numbers._last.values())).number == count)
+        while not isinstance(items[-1], Idle):
+            items.append(next(arrivals))
         robot.send("x", b"last")
         while not (isinstance(items[-1], Arrival) and items[-1].payload == b"last"):
             items.append(next(arrivals))
-        source.close()
-        arrivals.close()  # type: ignore[attr-defined]
+        arrivals.close()
     came = [item for item in items if isinstance(item, Arrival)]
     missed = [item for item in items if isinstance(item, Missed)]
     assert len(came) + sum(item.count for item in missed) == count + 1

@@ -4,10 +4,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fretc.watch.sources import zenoh_numbers
 from fretc.watch.sources.source import Missed
-from fretc.watch.sources.zenoh_keys import Attachment
-from fretc.watch.sources.zenoh_numbers import Numbers
+from fretc.watch.sources.zenoh import sequence_numbers
+from fretc.watch.sources.zenoh.keys import Attachment
+from fretc.watch.sources.zenoh.sequence_numbers import Numbers
 
 A, B = b"a" * 16, b"b" * 16
 KEY = "0/x/T/h"
@@ -99,7 +99,7 @@ def test_numbers_of_strangers_are_limited(monkeypatch: pytest.MonkeyPatch) -> No
     numbers = Numbers()
     sent(numbers, 0, 10)
     assert sent(numbers, 2**63 - 1, 20) == Missed(11, 19, 2**53)
-    monkeypatch.setattr(zenoh_numbers, "MOST_PUBLISHERS", 3)
+    monkeypatch.setattr(sequence_numbers, "MOST_PUBLISHERS", 3)
     for place in range(9):
         sent(numbers, 1, 30, bytes([place]) * 16)
     sent(numbers, 1, 40, bytes([6]) * 16)

@@ -14,7 +14,7 @@ from threading import Event as Flag
 from typing import Any
 
 from fretc.logs.messages.ros2_types import definitions
-from fretc.watch.sources.zenoh_keys import LONGEST_ATTACHMENT
+from fretc.watch.sources.zenoh.keys import LONGEST_ATTACHMENT
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.extras import install_help
 from fretish.diagnostics.messages import diagnostic
@@ -64,8 +64,8 @@ class ZenohSession:
         """Set once the connection is lost."""
         try:
             self._session: Any = zenoh.open(_configuration(locator, patience))
-        except zenoh.ZError as error:
-            raise SessionError(_reason(error)) from None
+        except zenoh.ZError:  # it does not tell more than the locator
+            raise SessionError("no router of Zenoh answers there") from None
         events = self._session.info.declare_transport_events_listener(
             _direct(self._on_transport), history=True
         )
@@ -156,8 +156,9 @@ def _configuration(locator: str, patience: float) -> Any:
     settings: dict[str, object] = {
         "mode": "client",
         "connect/endpoints": [locator],
-        "connect/timeout_ms": int(1000 * patience),
+        "connect/timeout_ms": 0,  # one attempt; the next one is fretc's own
         "connect/exit_on_failure": True,
+        "transport/unicast/open_timeout": int(1000 * patience),
         "scouting/multicast/enabled": False,
         "scouting/gossip/enabled": False,
         "adminspace/enabled": False,

@@ -7,8 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fretc.watch.sources.choice import chosen
-from fretc.watch.sources.zenoh import Zenoh
-from fretc.watch.sources.zenoh_keys import (
+from fretc.watch.sources.zenoh.keys import (
     Attachment,
     Kind,
     Token,
@@ -20,6 +19,7 @@ from fretc.watch.sources.zenoh_keys import (
     kind_of_message,
     token,
 )
+from fretc.watch.sources.zenoh.zenoh import Zenoh
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 HASH = "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"

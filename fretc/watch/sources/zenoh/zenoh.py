@@ -17,7 +17,7 @@ from fretc.watch.sources.mailbox import WAIT
 from fretc.watch.sources.middleware import Middleware, several_publishers
 from fretc.watch.sources.ros2_definitions import definition, no_definition
 from fretc.watch.sources.source import Channel, Missed, Reconnected
-from fretc.watch.sources.zenoh_keys import (
+from fretc.watch.sources.zenoh.keys import (
     Token,
     attachment,
     has_key,
@@ -26,9 +26,9 @@ from fretc.watch.sources.zenoh_keys import (
     kind_of_message,
     token,
 )
-from fretc.watch.sources.zenoh_numbers import Numbers
-from fretc.watch.sources.zenoh_publishers import Publisher, Publishers
-from fretc.watch.sources.zenoh_session import SessionError, ZenohSession, unless_importable
+from fretc.watch.sources.zenoh.publishers import Publisher, Publishers
+from fretc.watch.sources.zenoh.sequence_numbers import Numbers
+from fretc.watch.sources.zenoh.session import SessionError, ZenohSession, unless_importable
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.messages import diagnostic
@@ -237,15 +237,13 @@ class Zenoh(Middleware):
             of = attachment(attached)
             if of is None:
                 self._tell_once(topic, diagnostic("unnumbered_messages", topic=topic))
-                self._put(channel, payload)
-                self._unnumbered[key] = self._mailbox.now
+                self._unnumbered[key] = self._put(channel, payload)
                 return
             since = connection.publishers.since(key)
             missed = self._numbers.missed(key, of, since, self._mailbox.now)
             if missed is not None:
                 self._miss(connection, missed)
-            self._put(channel, payload, of.sent)
-            self._numbers.arrived(key, of, self._mailbox.now)
+            self._numbers.arrived(key, of, self._put(channel, payload, of.sent))
 
     def _miss(self, connection: _Connection, missed: Missed) -> None:
         """Report lost messages, unless the connection is lost too: then once it is back."""
