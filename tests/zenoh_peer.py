@@ -21,7 +21,7 @@ from typing import Any
 
 from fretc.logs.messages.ros2_types import definitions
 from fretc.watch.sources.source import Arrival, Event, Idle, Problem
-from fretc.watch.sources.zenoh.zenoh import Zenoh
+from fretc.watch.zenoh.zenoh import Zenoh
 from fretish.diagnostics.diagnostic import Code
 from tests.ros1 import until
 

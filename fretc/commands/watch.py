@@ -108,7 +108,7 @@ def watch(
     from fretc.commands.watch_output import outputs_of, until_stopped, watched
     from fretc.watch.publishing.publishing import Publishing
     from fretc.watch.reaction import Reaction
-    from fretc.watch.sources.choice import chosen
+    from fretc.watch.source_choice import chosen
     from fretc.watch.sources.log import Log
     from fretc.watch.watch import Watch
 

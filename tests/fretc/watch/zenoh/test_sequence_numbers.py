@@ -5,9 +5,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fretc.watch.sources.source import Missed
-from fretc.watch.sources.zenoh import sequence_numbers
-from fretc.watch.sources.zenoh.keys import Attachment
-from fretc.watch.sources.zenoh.sequence_numbers import Numbers
+from fretc.watch.zenoh import sequence_numbers
+from fretc.watch.zenoh.keys import Attachment
+from fretc.watch.zenoh.sequence_numbers import Numbers
 
 A, B = b"a" * 16, b"b" * 16
 KEY = "0/x/T/h"

@@ -20,7 +20,7 @@ from fretc.watch.sources.source import (
     Problem,
     Reconnected,
 )
-from fretc.watch.sources.zenoh import zenoh
+from fretc.watch.zenoh import zenoh
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.command import Fretc
 from tests.each import each
@@ -38,7 +38,7 @@ from tests.zenoh_peer import (
     peer,
 )
 
-ROOT = Path(__file__).parents[5]
+ROOT = Path(__file__).parents[4]
 LOG = ROOT / "traces/mission-seed15.mcap"
 TYPES = {"/scan": "sensor_msgs/msg/LaserScan", "/odom": "nav_msgs/msg/Odometry"}
 HASH = digest("std_msgs/msg/String")

@@ -10,8 +10,8 @@ from fretc.watch.sources.foxglove_protocol import address
 from fretc.watch.sources.log import Log
 from fretc.watch.sources.ros1 import Ros1
 from fretc.watch.sources.source import Source
-from fretc.watch.sources.zenoh.keys import is_locator
-from fretc.watch.sources.zenoh.zenoh import LOCATOR, Zenoh
+from fretc.watch.zenoh.keys import is_locator
+from fretc.watch.zenoh.zenoh import LOCATOR, Zenoh
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 

@@ -17,7 +17,7 @@ from fretc.watch.sources.mailbox import WAIT
 from fretc.watch.sources.middleware import Middleware, several_publishers
 from fretc.watch.sources.ros2_definitions import definition, no_definition
 from fretc.watch.sources.source import Channel, Missed, Reconnected
-from fretc.watch.sources.zenoh.keys import (
+from fretc.watch.zenoh.keys import (
     Token,
     attachment,
     has_key,
@@ -26,9 +26,9 @@ from fretc.watch.sources.zenoh.keys import (
     kind_of_message,
     token,
 )
-from fretc.watch.sources.zenoh.publishers import Publisher, Publishers
-from fretc.watch.sources.zenoh.sequence_numbers import Numbers
-from fretc.watch.sources.zenoh.session import SessionError, ZenohSession, unless_importable
+from fretc.watch.zenoh.publishers import Publisher, Publishers
+from fretc.watch.zenoh.sequence_numbers import Numbers
+from fretc.watch.zenoh.session import SessionError, ZenohSession, unless_importable
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.messages import diagnostic

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fretc.watch.sources.zenoh.keys import Token
+from fretc.watch.zenoh.keys import Token
 from fretish.classes.frozen import dataclass
 
 MOST_TOKENS = 10_000

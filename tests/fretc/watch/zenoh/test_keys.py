@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fretc.watch.sources.choice import chosen
-from fretc.watch.sources.zenoh.keys import (
+from fretc.watch.source_choice import chosen
+from fretc.watch.zenoh.keys import (
     Attachment,
     Kind,
     Token,
@@ -19,7 +19,7 @@ from fretc.watch.sources.zenoh.keys import (
     kind_of_message,
     token,
 )
-from fretc.watch.sources.zenoh.zenoh import Zenoh
+from fretc.watch.zenoh.zenoh import Zenoh
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 HASH = "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"

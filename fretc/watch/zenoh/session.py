@@ -14,7 +14,7 @@ from threading import Event as Flag
 from typing import Any
 
 from fretc.logs.messages.ros2_types import definitions
-from fretc.watch.sources.zenoh.keys import LONGEST_ATTACHMENT
+from fretc.watch.zenoh.keys import LONGEST_ATTACHMENT
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.extras import install_help
 from fretish.diagnostics.messages import diagnostic

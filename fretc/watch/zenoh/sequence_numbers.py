@@ -7,7 +7,7 @@ arrived. Times are receive times in nanoseconds.
 from __future__ import annotations
 
 from fretc.watch.sources.source import Missed
-from fretc.watch.sources.zenoh.keys import Attachment
+from fretc.watch.zenoh.keys import Attachment
 from fretish.classes.frozen import dataclass
 
 MOST_PUBLISHERS = 10_000
