@@ -210,18 +210,18 @@ class Zenoh(Middleware):
             ]
             since = min((time for time in times if time is not None), default=before.gone)
             self._mailbox.tell(Reconnected(min(since, now), now))
-        there = publishers.of_topic(topic)
-        if len(there) > 1:
-            names = sorted({each.token.node[:_NAME] for each in there})[:_NAMES]
-            self._tell_once(topic, several_publishers(topic, len(there), names))
+        there = publishers.count(topic)
+        if there > 1 and (Code.SEVERAL_PUBLISHERS, topic) not in self._known:
+            names = [node[:_NAME] for node in publishers.nodes(topic)[:_NAMES]]
+            self._tell_once(topic, several_publishers(topic, there, names))
 
     def _part(self, connection: _Connection, ended: list[Publisher]) -> None:
         publishers = connection.publishers
         for key in {each.token.key for each in ended}:
-            if not publishers.has_key(key):
+            if not publishers.count(key):
                 self._numbers.gone(key)
         for topic in sorted({each.topic for each in ended}):
-            if not publishers.of_topic(topic):
+            if not publishers.count(topic):
                 self._warn(diagnostic("publisher_gone", topic=topic))
 
     # Messages

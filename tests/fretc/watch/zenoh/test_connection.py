@@ -25,6 +25,7 @@ from fretc.watch.zenoh.publishers import Publisher, Publishers
 from fretc.watch.zenoh.session import OnMessage, OnToken, SessionError
 from fretc.watch.zenoh.zenoh import Zenoh
 from fretish.diagnostics.diagnostic import Code
+from fretish.diagnostics.messages import diagnostic
 from tests.zenoh_peer import STRING, digest
 
 HASH = digest("std_msgs/msg/String")
@@ -89,7 +90,7 @@ class Steps:
         self.session.lost.set()
         with pytest.raises(SessionError):
             self.source._look(self.connection)
-        self.source._lost(zenoh.diagnostic("zenoh_not_reached", locator="", why=""))
+        self.source._lost(diagnostic("zenoh_not_reached", locator="", why=""))
 
     def items(self) -> list[object]:
         """What has come since the last call."""
@@ -258,9 +259,16 @@ def test_the_number_of_publishers_is_limited(monkeypatch: pytest.MonkeyPatch) ->
     found = Publishers()
     for name in "abc":
         found.appear(name, Publisher("/x", Token(name, KEY), 1, is_early=False))
-    assert [each.token.node for each in found.of_topic("/x")] == ["a", "b"]
+    assert (found.nodes("/x"), found.count("/x"), found.count(KEY)) == (["a", "b"], 2, 2)
     found.disappear("a", 5)
     found.disappear("c", 5)
     found.appear("d", Publisher("/x", Token("d", KEY), 6, is_early=False))
-    assert {each.token.node for each in found.of_topic("/x")} == {"b", "d"}
+    assert (found.nodes("/x"), found.count("/x"), found.count(KEY)) == (["b", "d"], 2, 2)
+    assert found.ended(9) == []
+    found.disappear("b", 7)
+    found.disappear("d", 8)
+    assert [each.token.node for each in found.ended(7)] == ["b"]
+    assert (found.nodes("/x"), found.count("/x")) == (["d"], 1)
+    assert [each.token.node for each in found.ended(8)] == ["d"]
+    assert (found.nodes("/x"), found.count("/x"), found.count(KEY)) == ([], 0, 0)
     assert found.since(KEY) == 1
