@@ -203,7 +203,6 @@ class Zenoh(Middleware):
         publisher = Publisher(topic, found, now, is_early=not connection.is_open)
         before = publishers.appear(name, publisher)
         if before is not None and before.gone is not None:
-            publisher.is_early = before.is_early
             times = [
                 self._numbers.last_of(found.key, before.since),
                 self._unnumbered.get(found.key),

@@ -272,3 +272,11 @@ def test_the_number_of_publishers_is_limited(monkeypatch: pytest.MonkeyPatch) ->
     assert [each.token.node for each in found.ended(8)] == ["d"]
     assert (found.nodes("/x"), found.count("/x"), found.count(KEY)) == ([], 0, 0)
     assert found.since(KEY) == 1
+
+
+def test_a_second_publisher_does_not_make_the_first_one_new(steps: Steps) -> None:
+    steps.session.meet["%x"](NAME, True)
+    steps.answer()
+    steps.session.meet["%x"](NAME.replace("/a/", "/b/"), True)
+    steps.session.take(KEY, b"3", attached(3))
+    assert Missed not in {type(item) for item in steps.items()}
