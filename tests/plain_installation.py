@@ -73,6 +73,7 @@ LINES: tuple[tuple[str, ...], ...] = (
     ("mutate", RULE, "--against", "run.bag"),
     ("watch", "dds"),
     ("watch", "foxglove", "ws://127.0.0.1:9"),
+    ("watch", "zenoh", "tcp/127.0.0.1:9"),
     ("watch", "json.mcap", *SMALL, "--publish", "foxglove:0"),
     ("check", "--requirements", "parents"),
     ("audit", "protobuf.mcap", *SMALL),

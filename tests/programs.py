@@ -74,6 +74,7 @@ PACKAGES = {
     "cyclonedds": "pip install -e '.[live]'",
     "scipy": "pip install -e '.[dev]'",
     "stormpy": "pip install -e '.[peers]'",
+    "zenoh": "pip install -e '.[zenoh]'",
 }
 """Of the Python of the tests, which nothing hides."""
 DEBIANS_PYTHON = "/usr/bin/python3"

@@ -39,7 +39,8 @@ fretc.report.sections  fretc.report.front
 fretc.report.across  fretc.report.page  fretc.report.forms  fretc.report  fretc.trends
 simulation.world  simulation.nodes  simulation
 fretc.play  fretc.terminal  fretc.campaigns  fretc.testing.log_synthesis
-fretc.watch.sources  fretc.watch  fretc.watch.publishing  fretc.api  fretc.commands  fretc
+fretc.watch.sources  fretc.watch.zenoh  fretc.watch  fretc.watch.publishing
+fretc.api  fretc.commands  fretc
 """.split()
 ROOMS = {package.partition(".")[0] for package in ORDER}
 NOT = {  # what stands above, and is still not to be known
@@ -130,6 +131,7 @@ DOORS = {
     "lz4": {"fretc/logs/mcap/container.py"},
     "wcwidth": {"fretc/terminal/screen.py"},
     "cyclonedds": {"fretc/watch/sources/dds_domain.py", "fretc/watch/sources/dds_types.py"},
+    "zenoh": {"fretc/watch/zenoh/session.py"},
     "websockets": {"fretc/watch/sources/foxglove.py"},
     "foxglove": {"fretc/watch/publishing/foxglove_server.py"},
     "click": CLICK,

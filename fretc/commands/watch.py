@@ -45,7 +45,7 @@ _WATCH = {
 @click.command(
     cls=CommandWithHeadings,
     headings=_WATCH,
-    epilog=extras({"live": "dds, foxglove and --publish"}),
+    epilog=extras({"live": "dds, foxglove and --publish", "zenoh": "zenoh"}),
 )
 @click.argument("words", nargs=-1, required=True, type=PATH, metavar="SOURCE...")
 @requirements_option
@@ -93,8 +93,9 @@ def watch(
     """Check a running robot against all requirements, until Ctrl-C.
 
     SOURCE is `dds` (ROS 2, domain ROS_DOMAIN_ID), `ros1` (ROS 1, master ROS_MASTER_URI),
-    `foxglove ws://HOST:PORT` (a Foxglove server such as foxglove_bridge), or an MCAP file; with
-    --follow, a file that is still being recorded.
+    `foxglove ws://HOST:PORT` (a Foxglove server such as foxglove_bridge), `zenoh [LOCATOR]` (ROS 2
+    with rmw_zenoh; default tcp/localhost:7447), or an MCAP file; with --follow, a file that is
+    still being recorded.
 
     The verdicts are those that `fretc audit` gives to the recording.
 
@@ -107,7 +108,7 @@ def watch(
     from fretc.commands.watch_output import outputs_of, until_stopped, watched
     from fretc.watch.publishing.publishing import Publishing
     from fretc.watch.reaction import Reaction
-    from fretc.watch.sources.choice import chosen
+    from fretc.watch.source_choice import chosen
     from fretc.watch.sources.log import Log
     from fretc.watch.watch import Watch
 

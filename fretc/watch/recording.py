@@ -92,7 +92,7 @@ class RunRecorder:
             OSError: for example because the disk is full.
         """
         if len(missed) > MOST_GAPS:
-            missed = ((missed[0][0], missed[-1][1]),)
+            missed = ((min(since for since, _ in missed), max(until for _, until in missed)),)
         try:
             self._writer.add_metadata(WATCH, watch_record(self._clock, until, missed, disordered))
             self._writer.finish()

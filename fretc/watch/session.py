@@ -16,6 +16,7 @@ from fretc.logs.reader import read
 from fretc.logs.signals.samples import Gap
 from fretc.logs.signals.traces import trace
 from fretc.logs.stream import ClockTick, SampleStream, StreamEnd, Withdrawn
+from fretc.watch.checkpoints import Checkpoints
 from fretc.watch.decoding import Decoder, Timed
 from fretc.watch.requirement_monitors import RequirementMonitors
 from fretc.watch.sources.source import Arrival
@@ -89,6 +90,8 @@ class Session:
         self.disordered = 0
         """Messages that arrived after later ones whose ticks had been judged, in a log that is
         followed."""
+        self._checkpoints = Checkpoints()
+        self._last_arrival = 0
         self._missed: list[Gap] = []
         self._gap_from: int | None = None
         """The latest time before messages were missed, until another one arrives."""
@@ -180,6 +183,9 @@ class Session:
         for message in messages:
             was_judged = self._take(message)
             self.disordered += is_behind and was_judged
+        self._last_arrival = max(self._last_arrival, arrival.log_time)
+        if self.now:
+            self._checkpoints.add(self._last_arrival, self.now)
         return None
 
     def _take(self, message: Timed) -> bool:
@@ -206,7 +212,8 @@ class Session:
     def miss(self, since: int, until: int) -> None:
         """Record that messages received from `since` to `until` were lost.
 
-        With stamps, the neighbouring messages determine the lost times.
+        With stamps, the neighbouring messages determine the lost times. If others have arrived
+        since, the time from `since` on is unknown.
         """
         self.interrupted, self._ahead = False, None
         if self._missed and since <= self._missed[-1][1]:
@@ -217,7 +224,15 @@ class Session:
             self._gap_from = None
             self._withdraw(self._stream.miss(since, until))
         else:
-            self._gap_from = self._gap_from or self.now or None
+            known = [self._gap_from, self._latest_at(since)]
+            self._gap_from = min((time for time in known if time is not None), default=None)
+
+    def _latest_at(self, arrival: int) -> int | None:
+        """The latest time of the messages until this arrival; None: there is no message at all."""
+        if not self.now or arrival >= self._last_arrival:
+            return self.now or None
+        latest = self._checkpoints.latest(arrival)
+        return self._checkpoints.first if latest is None else latest
 
     def idle(self, now: int) -> Diagnostic | None:
         """Record that all messages received before `now` have been added."""

@@ -255,6 +255,7 @@ class Code(Enum):
     PUBLISHER_GONE = ("F962", "a watched topic has no publisher any more")
     NOT_PUBLISHED = ("F963", "the verdicts of a watch cannot be published")
     DISORDERED = ("F964", "a watched log has messages out of order")
+    UNNUMBERED = ("F965", "messages of a watched topic have no number")
     INTERNAL = ("F999", "internal error in fretc")
 
     @property

@@ -22,7 +22,7 @@ ALWAYS = {
     "mujoco",
     "numpy.ma",
 }
-ALWAYS |= {"foxglove", "pyarrow", "rosbags", "spot", "websockets", "xml", "z3", "zipfile"}
+ALWAYS |= {"foxglove", "pyarrow", "rosbags", "spot", "websockets", "xml", "z3", "zenoh", "zipfile"}
 TEXTS = ALWAYS | {"mcap", "multiprocessing", "numpy", "socket", "subprocess", "zstandard"}
 HELP = TEXTS | {"jinja2", "lark", "tomllib"}
 REPORT = ALWAYS | {"mcap", "multiprocessing", "numpy", "socket"}

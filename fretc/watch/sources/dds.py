@@ -17,6 +17,7 @@ from fretc.watch.sources.dds_domain import DdsPublisher, DdsWriter, Domain, Read
 from fretc.watch.sources.dds_types import Offer, UnreadableTypeError
 from fretc.watch.sources.mailbox import WAIT, Mailbox
 from fretc.watch.sources.middleware import Middleware, several_publishers
+from fretc.watch.sources.ros2_definitions import definition, no_definition
 from fretc.watch.sources.source import Channel, Problem, Reconnected
 from fretc.watch.sources.type_service import TypeService
 from fretish.classes.frozen import dataclass
@@ -166,7 +167,9 @@ class _Listening:
         if since is not None:
             self._mailbox.tell(Reconnected(since, now))
         if (topic, offer) not in self._kinds:
-            if _definition(offer) is None and self._types.asks(publisher.participant, offer):
+            if definition(offer.type, offer.hash) is None and self._types.asks(
+                publisher.participant, offer
+            ):
                 self._kinds[topic, offer] = _Kind(None, _channel(topic, offer, None))
             else:
                 self._open(topic, offer)
@@ -190,10 +193,12 @@ class _Listening:
 
     def _open(self, topic: str, offer: Offer) -> None:
         """Open a reader for a new kind of publishers."""
-        definition = _definition(offer) or self._types.definition(offer)
-        if definition is None:
-            self._tell_once(topic, _no_definition(topic, offer))
-        kind = self._kinds[topic, offer] = _Kind(None, _channel(topic, offer, definition))
+        text = definition(offer.type, offer.hash) or self._types.definition(offer)
+        if text is None:
+            self._tell_once(
+                topic, no_definition(topic, offer.type, offer.hash, "no node describes it")
+            )
+        kind = self._kinds[topic, offer] = _Kind(None, _channel(topic, offer, text))
         if sum(each == topic for each, _ in self._kinds) > MOST_KINDS:
             self._tell_once(
                 topic,
@@ -203,7 +208,7 @@ class _Listening:
             )
             return
         try:
-            kind.reader = self._domain.reader(topic, offer, definition)
+            kind.reader = self._domain.reader(topic, offer, text)
         except UnreadableTypeError as error:
             self._tell_once(topic, _not_read(topic, str(error)))
 
@@ -251,9 +256,9 @@ class _Diagnosing:
             return
         self._last = time.monotonic()
         if self._writer is None:
-            digest, definition = [*ros2_types.definitions(_ARRAY).items()][-1]
+            digest, text = [*ros2_types.definitions(_ARRAY).items()][-1]
             offer = Offer(_ARRAY, digest, reliable=True)
-            self._writer = self._domain.writer("/diagnostics", offer, definition)
+            self._writer = self._domain.writer("/diagnostics", offer, text)
         with suppress(UnreadableTypeError):  # a reader is too slow; the next statuses follow soon
             self._writer.write(_array(statuses, time.time_ns()))
 
@@ -283,29 +288,10 @@ def _array(statuses: Sequence[Status], now: int) -> bytes:
     )
 
 
-def _definition(offer: Offer) -> str | None:
-    """The definition with the publisher's hash; without a hash the only one, or None."""
-    definitions = ros2_types.definitions(offer.type)
-    if offer.hash is not None:
-        return definitions.get(offer.hash)
-    return next(iter(definitions.values())) if len(definitions) == 1 else None
-
-
-def _channel(topic: str, offer: Offer, definition: str | None) -> Channel:
-    if definition is None:
+def _channel(topic: str, offer: Offer, text: str | None) -> Channel:
+    if text is None:
         return Channel(topic, "cdr", offer.type, "", b"")
-    return Channel(topic, "cdr", offer.type, "ros2msg", definition.encode())
-
-
-def _no_definition(topic: str, offer: Offer) -> Diagnostic:
-    definitions = ros2_types.definitions(offer.type)
-    if not definitions:
-        why = "is not a type of ROS 2 itself, and no node describes it"
-    elif offer.hash is None:
-        why = "differs between releases of ROS 2, and its publisher sends no type hash"
-    else:
-        why = "is defined differently by its publisher: the type hash differs"
-    return diagnostic("no_message_definition", topic=topic, type=offer.type, why=why)
+    return Channel(topic, "cdr", offer.type, "ros2msg", text.encode())
 
 
 def _not_read(topic: str, why: str) -> Diagnostic:

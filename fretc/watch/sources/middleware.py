@@ -92,8 +92,11 @@ class Middleware(ABC):
         if self._alive is not None and not self._is_lost:
             self._alive = max(self._alive, now)
 
-    def _put(self, channel: Channel, payload: bytes, publish_time: int | None = None) -> None:
-        self._is_alive(self._mailbox.put(channel, payload, publish_time) + 1)
+    def _put(self, channel: Channel, payload: bytes, publish_time: int | None = None) -> int:
+        """Pass on a message; returns its receive time."""
+        received = self._mailbox.put(channel, payload, publish_time)
+        self._is_alive(received + 1)
+        return received
 
     def _warn(self, problem: Diagnostic) -> None:
         self._mailbox.tell(Problem(problem))

@@ -72,7 +72,10 @@ class Reconnected:
 
 @dataclass(frozen=True, slots=True)
 class Missed:
-    """Messages that arrived from `since` to `until` and were dropped: the watch was too slow."""
+    """Messages from `since` to `until` that are known to be lost.
+
+    They arrived, and the watch was too slow; or they did not arrive, and their numbers are missing.
+    """
 
     since: int
     until: int

@@ -18,7 +18,7 @@ from fretc.watch.session import EndedRun, Jump, Session
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from monitors.kernel.verdicts import Truth
 from tests.effort import examples
-from tests.fretc.watch.sent import MS, Sent, Setting, plan_of, settings_
+from tests.fretc.watch.sent import MS, START, Sent, Setting, plan_of, settings_
 
 messages = st.lists(
     st.builds(
@@ -216,3 +216,19 @@ def test_a_clock_that_leaps_ahead_by_a_million_ticks_is_told_of() -> None:
     found = session.arrive(Sent("/x", 9.0, 11_000_000).arrival)
     assert isinstance(found, Diagnostic)
     assert found.code is Code.TOO_LARGE
+
+
+def test_a_loss_that_is_known_late_makes_unknown_what_came_since() -> None:
+    """A message of `/x` is lost; it is noticed after `/y` has gone on for long."""
+    session = Session(plan_of(BY_STAMP))
+    for at in range(0, 1000, 10):
+        session.arrive(Sent("/y", 9.0, at).arrival)
+        if at in (0, 300):
+            session.arrive(Sent("/x", 1.0, at).arrival)
+    session.miss(START + 301 * MS, START + 995 * MS)
+    session.arrive(Sent("/x", 1.0, 1000).arrival)
+    session.end()
+    near = {time: row["near"] for time, row in live_rows(session)}
+    assert near[START + 150 * MS] is True
+    after = {near[time] for time in near if START + 300 * MS < time < START + 1000 * MS}
+    assert after == {None}

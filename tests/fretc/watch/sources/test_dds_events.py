@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 from fretc.logs.messages.ros2_types import definitions, latest
-from fretc.watch.sources.choice import chosen
+from fretc.watch.source_choice import chosen
 from fretc.watch.sources.dds import MOST_KINDS, Dds
 from fretc.watch.sources.dds_domain import DdsWriter, Domain, join
 from fretc.watch.sources.dds_types import (

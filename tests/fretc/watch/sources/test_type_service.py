@@ -148,7 +148,7 @@ def first_arrival(source: Dds) -> tuple[Arrival, list[Code]]:
 def test_a_type_that_fretc_does_not_know_is_asked_of_its_node(
     here: Network, monkeypatch: pytest.MonkeyPatch, *, answered: bool
 ) -> None:
-    monkeypatch.setattr(dds, "_definition", lambda offer: None)
+    monkeypatch.setattr(dds, "definition", lambda type_, digest: None)
     if not answered:
         monkeypatch.setattr(type_service, "_FAST_DDS", "another vendor")
     robot = here.robot()

@@ -10,6 +10,8 @@ from fretc.watch.sources.foxglove_protocol import address
 from fretc.watch.sources.log import Log
 from fretc.watch.sources.ros1 import Ros1
 from fretc.watch.sources.source import Source
+from fretc.watch.zenoh.keys import is_locator
+from fretc.watch.zenoh.zenoh import LOCATOR, Zenoh
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 
@@ -36,10 +38,15 @@ def _foxglove(text: str = "") -> Source | Diagnostic:
     return url if isinstance(url, Diagnostic) else Foxglove(url)
 
 
+def _zenoh(text: str = LOCATOR) -> Source | Diagnostic:
+    return Zenoh(text) if is_locator(text) else diagnostic("bad_locator", text=text)
+
+
 _MIDDLEWARE: Mapping[str, tuple[int, Callable[..., Source | Diagnostic]]] = {
     "ros1": (0, Ros1),
     "dds": (0, Dds),
     "foxglove": (1, _foxglove),
+    "zenoh": (1, _zenoh),
 }
 """For each name of a middleware, the most words after it, and the source of these words."""
 

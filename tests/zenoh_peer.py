@@ -1,0 +1,251 @@
+"""A peer on Zenoh for tests, in a process of its own, and what a watch of it has given.
+
+It speaks as the design page of rmw_zenoh says: keys, liveliness tokens, and attachments by Zenoh's
+own serializer. rmw_zenoh itself is not installed. The peer listens at one port of this machine and
+looks for nobody.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import socket
+import subprocess
+import sys
+from base64 import b64encode
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from threading import Thread
+from typing import Any
+
+from fretc.logs.messages.ros2_types import definitions
+from fretc.watch.sources.source import Arrival, Event, Idle, Problem
+from fretc.watch.zenoh.zenoh import Zenoh
+from fretish.diagnostics.diagnostic import Code
+from tests.ros1 import until
+
+STRING = "std_msgs::msg::dds_::String_"
+NO_HASH = "TypeHashNotSupported"
+
+_PEER = '''
+"""Does what standard input says: an object of JSON a line. It prints each line that is done."""
+import base64, json, sys, time
+import zenoh
+from zenoh.ext import (
+    CacheConfig, HistoryConfig, Int64, MissDetectionConfig, UInt8, declare_advanced_publisher,
+    z_serialize,
+)
+
+configuration = zenoh.Config()
+for name, value in {
+    "mode": "peer",
+    "listen/endpoints": [f"tcp/127.0.0.1:{sys.argv[1]}"],
+    "scouting/multicast/enabled": False,
+    "scouting/gossip/enabled": False,
+    "transport/shared_memory/enabled": False,
+    "timestamping/enabled": True,
+}.items():
+    configuration.insert_json5(name, json.dumps(value))
+session = zenoh.open(configuration)
+print(session.zid(), flush=True)
+publishers, tokens, count = {}, {}, 0
+
+
+def attached(number, time, gid):
+    """The three fields, and nothing between them."""
+    return b"".join(
+        z_serialize(each).to_bytes() for each in (Int64(number), Int64(time), bytes.fromhex(gid))
+    )
+
+
+class Publisher:
+    def __init__(self, domain, topic, type, hash, node="talker", gid=None, keeps=0, token=True):
+        global count
+        count += 1
+        self.gid = gid or f"{count:032x}"
+        self.number = 0
+        key = f"{domain}/{topic.strip('/')}/{type}/{hash}"
+        if keeps:
+            self.publisher = declare_advanced_publisher(
+                session, key, cache=CacheConfig(keeps), publisher_detection=True,
+                congestion_control=zenoh.CongestionControl.BLOCK,
+            )
+        else:
+            self.publisher = session.declare_publisher(
+                key, congestion_control=zenoh.CongestionControl.BLOCK
+            )
+        mangled = topic.replace("/", "%")
+        qos = f":{1 if keeps else ''}:,10:,:,:,,"
+        name = (
+            f"@ros2_lv/{domain}/{session.zid()}/0/{count}/MP/%/%/{node}/"
+            f"{mangled}/{type}/{hash}/{qos}"
+        )
+        self.token = session.liveliness().declare_token(name) if token else None
+
+    def send(self, data, number=None, time=None, attachment=None):
+        self.number = self.number + 1 if number is None else number
+        if attachment is None:
+            attachment = attached(self.number, 7 if time is None else time, self.gid)
+        self.publisher.put(data, attachment=attachment or None)
+
+    def end(self):
+        self.publisher.undeclare()
+        if self.token is not None:
+            self.token.undeclare()
+
+
+def play(path, start, end, skip):
+    """A part of a log, as it went, in seconds from its beginning; a message may be lost."""
+    from mcap.reader import make_reader
+    begin, first = None, None
+    with open(path, "rb") as stream:
+        for schema, channel, message in make_reader(stream).iter_messages():
+            first = first or message.log_time
+            at = (message.log_time - first) / 1e9
+            if channel.topic not in publishers or not start <= at < end:
+                continue
+            begin = begin or time.monotonic() - at
+            time.sleep(max(0, begin + at - time.monotonic()))
+            publisher = publishers[channel.topic]
+            if publisher.number + 1 == skip:
+                publisher.number += 1
+            publisher.send(message.data, time=message.log_time)
+
+
+for line in sys.stdin:
+    asked = json.loads(line)
+    do, name = asked.pop("do"), asked.pop("name", None)
+    for word in ("data", "attachment"):
+        if asked.get(word) is not None:
+            asked[word] = base64.b64decode(asked[word])
+    match do:
+        case "publish":
+            publishers[name] = Publisher(**asked)
+        case "send":
+            publishers[name].send(**asked)
+        case "flood":
+            for _ in range(asked["count"]):
+                publishers[name].send(asked["data"])
+        case "end":
+            publishers.pop(name).end()
+        case "untoken":
+            publishers[name].token.undeclare()
+        case "put":
+            session.put(asked["key"], asked["data"])
+        case "delete":
+            session.delete(asked["key"])
+        case "token":
+            tokens[asked["key"]] = session.liveliness().declare_token(asked["key"])
+        case "drop":
+            tokens.pop(asked["key"]).undeclare()
+        case "play":
+            play(*asked["part"], asked["skip"])
+    print(do, flush=True)
+'''
+
+
+def digest(type_: str) -> str:
+    """The hash of a standard type, of the latest release."""
+    return [*definitions(type_)][-1]
+
+
+def mangled(type_: str) -> str:
+    """`std_msgs/msg/String` → `std_msgs::msg::dds_::String_`."""
+    package, kind, name = type_.split("/")
+    return f"{package}::{kind}::dds_::{name}_"
+
+
+@dataclass
+class Peer:
+    """A peer; what it is asked to do is done when the call returns."""
+
+    process: subprocess.Popen[str]
+    port: int
+
+    @property
+    def locator(self) -> str:
+        return f"tcp/127.0.0.1:{self.port}"
+
+    def ask(self, do: str, **more: object) -> None:
+        assert self.process.stdin is not None
+        assert self.process.stdout is not None
+        for word in ("data", "attachment"):
+            value = more.get(word)
+            if isinstance(value, bytes):
+                more[word] = b64encode(value).decode()
+        print(json.dumps({"do": do, **more}), file=self.process.stdin, flush=True)
+        assert self.process.stdout.readline() == f"{do}\n"
+
+    def publish(self, name: str, topic: str = "/x", **more: object) -> None:
+        usual: dict[str, object] = {"domain": 0, "type": STRING}
+        usual["hash"] = digest("std_msgs/msg/String")
+        self.ask("publish", name=name, topic=topic, **{**usual, **more})
+
+    def send(self, name: str, data: bytes = b"x", **more: object) -> None:
+        self.ask("send", name=name, data=data, **more)
+
+
+def free_port() -> int:
+    with socket.socket() as one:
+        one.bind(("127.0.0.1", 0))
+        return int(one.getsockname()[1])
+
+
+@contextmanager
+def peer(port: int | None = None) -> Iterator[Peer]:
+    """A peer on a port that is free, or on this one."""
+    port = free_port() if port is None else port
+    pipes: dict[str, Any] = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
+    process = subprocess.Popen([sys.executable, "-c", _PEER, str(port)], **pipes)
+    try:
+        assert process.stdout is not None
+        assert process.stdout.readline()
+        yield Peer(process, port)
+    finally:
+        process.kill()
+        process.communicate()
+
+
+class Listened:
+    """A source, and what it has given."""
+
+    def __init__(self, locator: str, *topics: str) -> None:
+        os.environ.pop("ROS_DOMAIN_ID", None)
+        self.source = Zenoh(locator)
+        self.items: list[Arrival | Event] = []
+        self.thread = Thread(target=self._listen, args=(topics or ("/x",),), daemon=True)
+        self.thread.start()
+
+    def _listen(self, topics: tuple[str, ...]) -> None:
+        for item in self.source.arrivals(topics):
+            if not isinstance(item, Idle):
+                self.items.append(item)
+
+    def of(self, kind: type) -> list[Any]:
+        return [item for item in tuple(self.items) if isinstance(item, kind)]
+
+    @property
+    def payloads(self) -> list[bytes]:
+        return [item.payload for item in self.of(Arrival)]
+
+    @property
+    def codes(self) -> list[Code]:
+        return [item.diagnostic.code for item in self.of(Problem)]
+
+    def wait(self, what: str, holds: Callable[[], object]) -> None:
+        try:
+            until(what, holds, 20)
+        except AssertionError as error:
+            raise AssertionError(f"{error}: {self.items[-3:]}") from None
+
+
+@contextmanager
+def listened(locator: str, *topics: str) -> Iterator[Listened]:
+    found = Listened(locator, *topics)
+    try:
+        yield found
+    finally:
+        found.source.close()
+        found.thread.join(10)
+        assert not found.thread.is_alive()
