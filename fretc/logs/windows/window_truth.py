@@ -1,0 +1,290 @@
+"""Truth values at ticks over a window of few samples, in lists instead of arrays.
+
+The steps are those of `fretc.logs.signals.propositions.evaluate` over the same window, and the
+truth values those of `fretc.logs.signals.traces.proposition_states`, without late messages. Times
+are nanoseconds.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Collection, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from fretc.logs.signals.measures import ExpressionError
+from fretc.logs.signals.propositions import FALSE, TRUE, UNKNOWN, outermost_persistences
+from fretc.logs.windows.sample_queue import SampleQueue
+from fretc.logs.windows.truth_functions import (
+    NoFunctionError,
+    NumberType,
+    TruthFunction,
+    truth_function,
+)
+from fretish import expressions as e
+from fretish.bindings.declarations import Aggregate, Declarations, Proposition
+from fretish.bindings.expressions import ticks_back
+from fretish.classes.frozen import dataclass
+from monitors.kernel.verdicts import Truth
+
+_VALUES: tuple[Truth, ...] = (False, None, True)
+_NAN = float("nan")
+
+
+@dataclass(frozen=True, slots=True)
+class Window:
+    """The time that the samples of a stream cover."""
+
+    begin: int
+    """The first message of the stream."""
+    before: int
+    """The last tick before the new ones; it is not before `begin`."""
+    lost: int
+    """The end of the last gap, which is before the samples; -1: there is none."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Steps:
+    """The states from each time on; both of shape (n,), n >= 1, with increasing times."""
+
+    times: list[int]
+    states: list[int]
+
+
+@dataclass(frozen=True, slots=True)
+class _Values:
+    """The values of signals from each time on, a list for each signal; NaN: unknown."""
+
+    times: list[int]
+    values: tuple[list[float], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Function:
+    """An expression, with its outermost persistences and their durations."""
+
+    states: TruthFunction
+    parts: tuple[tuple[_Function, int], ...]
+
+
+class WindowTruth:
+    """The propositions of a stream over its window."""
+
+    def __init__(
+        self,
+        declarations: Declarations,
+        queues: Mapping[str, SampleQueue],
+        lookbacks: Mapping[str, int],
+    ) -> None:
+        """`lookbacks`: for each proposition the duration that it looks back."""
+        self._queues = queues
+        self._lookbacks = lookbacks
+        self._propositions = {name: declarations.propositions[name] for name in lookbacks}
+        self._kinds: tuple[np.dtype[Any] | None, ...] = ()
+        self._functions: dict[str, _Function] = {}
+
+    def truth(self, window: Window, ticks: Sequence[int]) -> dict[str, list[Truth]]:
+        """The truth values of propositions at new ticks, whose times increase, each shape (ticks,).
+
+        A proposition is left out if it has no function in Python, or if several samples of one of
+        its signals in the window have the same time.
+        """
+        kinds = tuple(queue.kind for queue in self._queues.values())
+        if kinds != self._kinds:
+            self._kinds = kinds
+            self._functions = self._all_functions()
+        values = _WindowValues(self._queues, window.lost, ticks[-1])
+        truths: dict[str, list[Truth]] = {}
+        for name, function in self._functions.items():
+            proposition = self._propositions[name]
+            start = max(window.begin, window.before - self._lookbacks[name] - 1)
+            if any(self._queues[signal].tied >= start for signal in proposition.signals):
+                continue
+            steps = _steps(function, values.of(proposition.signals, start), ticks[-1])
+            truths[name] = _at_ticks(proposition, steps, window.before, ticks)
+        return truths
+
+    def _all_functions(self) -> dict[str, _Function]:
+        functions = {}
+        for name, proposition in self._propositions.items():
+            if ticks_back(proposition.expression):
+                continue
+            names = {each: _number_type(self._queues[each]) for each in proposition.signals}
+            if any(each.kind.itemsize > _DOUBLE for each in names.values()):
+                continue
+            try:
+                functions[name] = _function(proposition.expression, names)
+            except (NoFunctionError, ExpressionError, ValueError):
+                continue
+        return functions
+
+
+_DOUBLE = 8
+"""Bytes of a 64-bit float."""
+
+
+def _number_type(queue: SampleQueue) -> NumberType:
+    kind = np.dtype(np.float32) if queue.kind is None else queue.kind
+    return NumberType(kind, queue.signal.scale, queue.signal.values)
+
+
+def _function(expression: e.Expression, names: Mapping[str, NumberType]) -> _Function:
+    parts = tuple(dict.fromkeys(outermost_persistences(expression)))
+    return _Function(
+        truth_function(expression, names, parts),
+        tuple((_function(part.arg, names), part.duration) for part in parts),
+    )
+
+
+# Values
+
+
+class _WindowValues:
+    """The values of signals up to an end, computed once for each start."""
+
+    def __init__(self, queues: Mapping[str, SampleQueue], lost: int, end: int) -> None:
+        self._queues, self._lost, self._end = queues, lost, end
+        self._single: dict[tuple[str, int], _Values] = {}
+        self._joint: dict[tuple[Collection[str], int], _Values] = {}
+
+    def of(self, signals: tuple[str, ...], start: int) -> _Values:
+        """The values of some signals at each time at which one of them may change."""
+        if len(signals) == 1:
+            return self._of(signals[0], start)
+        key = signals, start
+        joint = self._joint.get(key)
+        if joint is None:
+            each = [self._of(name, start) for name in signals]
+            joint = self._joint[key] = _joined(each, start)
+        return joint
+
+    def _of(self, name: str, start: int) -> _Values:
+        key = name, start
+        single = self._single.get(key)
+        if single is None:
+            single = self._single[key] = _one(self._queues[name], self._lost, start, self._end)
+        return single
+
+
+def _one(queue: SampleQueue, lost: int, start: int, end: int) -> _Values:
+    """The values of one signal: at the start, at its samples, and where one is too old."""
+    max_age = queue.signal.max_age
+    first, stop = bisect_right(queue.times, start), bisect_right(queue.times, end)
+    current = _NAN
+    if first and queue.times[first - 1] > lost:
+        current = queue.values[first - 1]
+    if max_age is None:
+        return _Values(
+            [start, *queue.times[first:stop]],
+            ([current, *queue.values[first:stop]],),
+        )
+    times, values = [start], [current]
+    expiry = queue.times[first - 1] + max_age + 1 if first else end + 1
+    if expiry <= start:
+        values[0], expiry = _NAN, end + 1
+    for time, value in zip(queue.times[first:stop], queue.values[first:stop], strict=True):
+        if expiry < time:
+            times.append(expiry)
+            values.append(_NAN)
+        times.append(time)
+        values.append(value)
+        expiry = time + max_age + 1
+    if expiry <= end and (stop == len(queue.times) or expiry < queue.times[stop]):
+        times.append(expiry)
+        values.append(_NAN)
+    return _Values(times, (values,))
+
+
+def _joined(each: Sequence[_Values], start: int) -> _Values:
+    """The values of several signals at the times of all of them."""
+    if not each:
+        return _Values([start], ())
+    first = each[0].times
+    if all(one.times == first for one in each[1:]):
+        return _Values(first, tuple(one.values[0] for one in each))
+    times = sorted({time for one in each for time in one.times})
+    return _Values(times, tuple(_spread(one, times) for one in each))
+
+
+def _spread(one: _Values, times: Sequence[int]) -> list[float]:
+    """The values of a signal at more times."""
+    (values,) = one.values
+    if len(one.times) == len(times):
+        return values
+    spread, index, last = [], 0, len(one.times) - 1
+    for time in times:
+        if index < last and one.times[index + 1] <= time:
+            index += 1
+        spread.append(values[index])
+    return spread
+
+
+# Steps
+
+
+def _steps(function: _Function, history: _Values, end: int) -> _Steps:
+    if not function.parts:
+        return _Steps(history.times, function.states(history.times, *history.values))
+    parts = [
+        _persistence(_steps(part, history, end), duration, end) for part, duration in function.parts
+    ]
+    times = sorted({*history.times, *(time for part in parts for time in part.times)})
+    columns = [_spread(_Values(history.times, (each,)), times) for each in history.values]
+    states = [[part.states[i] for i in _places(part.times, times)] for part in parts]
+    return _Steps(times, function.states(times, *columns, *states))
+
+
+def _places(own: Sequence[int], times: Sequence[int]) -> list[int]:
+    """For each time, the index of the step in force."""
+    return [bisect_right(own, time) - 1 for time in times]
+
+
+def _persistence(arg: _Steps, duration: int, end: int) -> _Steps:
+    """The truth of `arg` throughout `[t - duration, t]`; only changes are steps."""
+    over = {FALSE: arg.times[0] - 1, UNKNOWN: arg.times[0] + duration, TRUE: 0}
+    """For each state, the time from which on it is in no interval; unless it is the current one."""
+    later = (time + duration for time in arg.times)
+    times: list[int] = []
+    states: list[int] = []
+    index, last, current = -1, len(arg.times) - 1, UNKNOWN
+    for time in sorted({*arg.times, *(time for time in later if time <= end)}):
+        if index < last and arg.times[index + 1] == time:
+            if index >= 0:
+                over[current] = time + duration
+            index += 1
+            current = arg.states[index]
+        state = TRUE
+        if current == UNKNOWN or time < over[UNKNOWN]:
+            state = UNKNOWN
+        if current == FALSE or time < over[FALSE]:
+            state = FALSE
+        if not states or state != states[-1]:
+            times.append(time)
+            states.append(state)
+    return _Steps(times, states)
+
+
+# Ticks
+
+
+def _at_ticks(
+    proposition: Proposition, steps: _Steps, before: int, ticks: Sequence[int]
+) -> list[Truth]:
+    """The truth value at each tick, of the steps after the tick before."""
+    truths: list[Truth] = []
+    begin = bisect_right(steps.times, before)
+    for tick in ticks:
+        end = bisect_right(steps.times, tick, begin)
+        state = _combined(proposition.aggregate, steps.states, begin, end)
+        value = _VALUES[state]
+        truths.append(proposition.on_unknown if value is None else value)
+        begin = end
+    return truths
+
+
+def _combined(aggregate: Aggregate, states: Sequence[int], begin: int, end: int) -> int:
+    if aggregate is Aggregate.LAST or begin == end:
+        return states[end - 1]
+    some = states[begin:end]
+    return max(some) if aggregate is Aggregate.ANY else min(some)
