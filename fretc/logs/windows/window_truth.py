@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import field
 from typing import Any
 
 import numpy as np
@@ -68,6 +69,29 @@ class _Function:
     parts: tuple[tuple[_Function, int], ...]
 
 
+@dataclass(frozen=True, slots=True)
+class _Member:
+    """A proposition with its function."""
+
+    name: str
+    function: _Function
+    aggregate: Aggregate
+    on_unknown: Truth
+
+
+@dataclass(slots=True)
+class _Group:
+    """Propositions of the same signals that look back equally long."""
+
+    signals: tuple[str, ...]
+    lookback: int
+    members: list[_Member] = field(default_factory=list)
+    values: tuple[float, ...] | None = None
+    """The values in force when the truth values were last constant; None: they never were."""
+    constants: dict[str, Truth] = field(default_factory=dict)
+    """The truth values while these values are in force."""
+
+
 class WindowTruth:
     """The propositions of a stream over its window."""
 
@@ -81,8 +105,8 @@ class WindowTruth:
         self._queues = queues
         self._lookbacks = lookbacks
         self._propositions = {name: declarations.propositions[name] for name in lookbacks}
-        self._kinds: tuple[np.dtype[Any] | None, ...] = ()
-        self._functions: dict[str, _Function] = {}
+        self._kinds: list[np.dtype[Any] | None] = []
+        self._groups: list[_Group] = []
 
     def truth(self, window: Window, ticks: Sequence[int]) -> dict[str, list[Truth]]:
         """The truth values of propositions at new ticks, whose times increase, each shape (ticks,).
@@ -90,34 +114,37 @@ class WindowTruth:
         A proposition is left out if it has no function in Python, or if several samples of one of
         its signals in the window have the same time.
         """
-        kinds = tuple(queue.kind for queue in self._queues.values())
+        kinds = [queue.kind for queue in self._queues.values()]
         if kinds != self._kinds:
             self._kinds = kinds
-            self._functions = self._all_functions()
+            self._groups = self._all_groups()
         values = _WindowValues(self._queues, window.lost, ticks[-1])
         truths: dict[str, list[Truth]] = {}
-        for name, function in self._functions.items():
-            proposition = self._propositions[name]
-            start = max(window.begin, window.before - self._lookbacks[name] - 1)
-            if any(self._queues[signal].tied >= start for signal in proposition.signals):
-                continue
-            steps = _steps(function, values.of(proposition.signals, start), ticks[-1])
-            truths[name] = _at_ticks(proposition, steps, window.before, ticks)
+        for group in self._groups:
+            start = max(window.begin, window.before - group.lookback - 1)
+            if not any(self._queues[signal].tied >= start for signal in group.signals):
+                truths |= _truths(group, values.of(group.signals, start), window.before, ticks)
         return truths
 
-    def _all_functions(self) -> dict[str, _Function]:
-        functions = {}
+    def _all_groups(self) -> list[_Group]:
+        groups: dict[tuple[tuple[str, ...], int], _Group] = {}
         for name, proposition in self._propositions.items():
-            if ticks_back(proposition.expression):
-                continue
-            names = {each: _number_type(self._queues[each]) for each in proposition.signals}
-            if any(each.kind.itemsize > _DOUBLE for each in names.values()):
-                continue
-            try:
-                functions[name] = _function(proposition.expression, names)
-            except (NoFunctionError, ExpressionError, ValueError):
-                continue
-        return functions
+            function = self._function(proposition)
+            if function is not None:
+                key = proposition.signals, self._lookbacks[name]
+                member = _Member(name, function, proposition.aggregate, proposition.on_unknown)
+                groups.setdefault(key, _Group(*key)).members.append(member)
+        return list(groups.values())
+
+    def _function(self, proposition: Proposition) -> _Function | None:
+        names = {name: _number_type(self._queues[name]) for name in proposition.signals}
+        is_exact = any(each.kind.itemsize > _DOUBLE for each in names.values())
+        if is_exact or ticks_back(proposition.expression):
+            return None
+        try:
+            return _function(proposition.expression, names)
+        except (NoFunctionError, ExpressionError, ValueError):
+            return None
 
 
 _DOUBLE = 8
@@ -170,7 +197,8 @@ class _WindowValues:
 def _one(queue: SampleQueue, lost: int, start: int, end: int) -> _Values:
     """The values of one signal: at the start, at its samples, and where one is too old."""
     max_age = queue.signal.max_age
-    first, stop = bisect_right(queue.times, start), bisect_right(queue.times, end)
+    first = bisect_right(queue.times, start)
+    stop = bisect_right(queue.times, end, first)
     current = _NAN
     if first and queue.times[first - 1] > lost:
         current = queue.values[first - 1]
@@ -268,23 +296,54 @@ def _persistence(arg: _Steps, duration: int, end: int) -> _Steps:
 # Ticks
 
 
-def _at_ticks(
-    proposition: Proposition, steps: _Steps, before: int, ticks: Sequence[int]
-) -> list[Truth]:
-    """The truth value at each tick, of the steps after the tick before."""
-    truths: list[Truth] = []
-    begin = bisect_right(steps.times, before)
+def _truths(
+    group: _Group, history: _Values, before: int, ticks: Sequence[int]
+) -> dict[str, list[Truth]]:
+    """The truth value of each proposition of a group at each tick, by the steps since the last."""
+    if group.lookback:
+        each = [(one, _steps(one.function, history, ticks[-1])) for one in group.members]
+        return {
+            one.name: _at_ticks(one, steps.states, _ranges(steps.times, before, ticks))
+            for one, steps in each
+        }
+    if history.times[-1] > before:
+        ranges = _ranges(history.times, before, ticks)
+        return {
+            one.name: _at_ticks(one, one.function.states(history.times, *history.values), ranges)
+            for one in group.members
+        }
+    values = tuple([each[-1] for each in history.values])
+    if values != group.values:
+        last, columns = history.times[-1:], [each[-1:] for each in history.values]
+        group.values = values
+        group.constants = {
+            one.name: _at_ticks(one, one.function.states(last, *columns), [(1, 1)])[0]
+            for one in group.members
+        }
+    return {name: [truth] * len(ticks) for name, truth in group.constants.items()}
+
+
+def _ranges(times: Sequence[int], before: int, ticks: Sequence[int]) -> list[tuple[int, int]]:
+    """For each tick the range of the steps that it covers, end excluded."""
+    begin, ranges = bisect_right(times, before), []
     for tick in ticks:
-        end = bisect_right(steps.times, tick, begin)
-        state = _combined(proposition.aggregate, steps.states, begin, end)
-        value = _VALUES[state]
-        truths.append(proposition.on_unknown if value is None else value)
+        end = bisect_right(times, tick, begin)
+        ranges.append((begin, end))
         begin = end
+    return ranges
+
+
+def _at_ticks(
+    member: _Member, states: Sequence[int], ranges: Sequence[tuple[int, int]]
+) -> list[Truth]:
+    """The truth value at each tick, from the steps that it covers, or else from the one before."""
+    truths: list[Truth] = []
+    for begin, end in ranges:
+        if begin == end or member.aggregate is Aggregate.LAST:
+            state = states[end - 1]
+        elif member.aggregate is Aggregate.ANY:
+            state = max(states[begin:end])
+        else:
+            state = min(states[begin:end])
+        truths.append(member.on_unknown if state == UNKNOWN else _VALUES[state])
     return truths
-
-
-def _combined(aggregate: Aggregate, states: Sequence[int], begin: int, end: int) -> int:
-    if aggregate is Aggregate.LAST or begin == end:
-        return states[end - 1]
-    some = states[begin:end]
-    return max(some) if aggregate is Aggregate.ANY else min(some)
