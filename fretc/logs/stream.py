@@ -288,6 +288,8 @@ class SampleStream:
         if (many := _too_many(self._ticking.due(time))) is not None:
             return many
         times = self._ticking.until(time)
+        if not times:
+            return ()
         ticks = self._ticks(times, self._ticking.passed)
         self._remember(times)
         return ticks

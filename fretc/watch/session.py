@@ -6,6 +6,7 @@ up to which they are complete. Times are nanoseconds, with the meaning in `monit
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Mapping
 from dataclasses import field
 from functools import cached_property
@@ -46,6 +47,9 @@ class EndedRun:
     """The end of the watch, on the declared clock."""
 
 
+_RECENT = 20
+
+
 @dataclass(slots=True)
 class ArrivedMessages:
     """The messages of a topic that have arrived."""
@@ -54,7 +58,7 @@ class ArrivedMessages:
     first: int | None = None
     last: int | None = None
     """Receive times."""
-    recent: list[int] = field(default_factory=list)
+    recent: deque[int] = field(default_factory=lambda: deque(maxlen=_RECENT))
     """The last receive times, for the rate."""
 
     @property
@@ -63,9 +67,6 @@ class ArrivedMessages:
         if len(self.recent) < 2 or self.recent[-1] == self.recent[0]:
             return None
         return (len(self.recent) - 1) * 1e9 / (self.recent[-1] - self.recent[0])
-
-
-_RECENT = 20
 
 
 class Session:
@@ -176,7 +177,7 @@ class Session:
             topic.count += 1
             topic.first = topic.first or arrival.log_time
             topic.last = arrival.log_time
-            topic.recent = [*topic.recent, arrival.log_time][-_RECENT:]
+            topic.recent.append(arrival.log_time)
         for message in messages:
             was_judged = self._take(message)
             self.disordered += is_behind and was_judged

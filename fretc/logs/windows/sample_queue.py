@@ -36,6 +36,8 @@ class SampleQueue:
     """The time of the first of them."""
     tied: int = -1
     """The latest time that several samples share; -1: none."""
+    interrupted: int = -1
+    """No sample after this time came when the one before it was too old; -1: none came so."""
 
     def refusal(self, kind: np.dtype[Any] | None, passed: int) -> Diagnostic | None:
         """F421: in a wider number type, samples of judged ticks would compare differently."""
@@ -67,8 +69,17 @@ class SampleQueue:
         index = bisect_right(self.times, time)
         if index and self.times[index - 1] == time:
             self.tied = max(self.tied, time)
+        if self.signal.max_age is not None:
+            self._interrupt(index, time, self.signal.max_age)
         self.times.insert(index, time)
         self.values.insert(index, value)
+
+    def _interrupt(self, index: int, time: int, max_age: int) -> None:
+        """Record that a new sample, or the one after it, comes after one that is too old."""
+        if index and time - self.times[index - 1] > max_age:
+            self.interrupted = max(self.interrupted, time)
+        if index < len(self.times) and self.times[index] - time > max_age:
+            self.interrupted = max(self.interrupted, self.times[index])
 
     def forget(self, start: int) -> None:
         """Drop the samples before the one that is in force when the window starts."""

@@ -196,32 +196,37 @@ class _WindowValues:
 
 def _one(queue: SampleQueue, lost: int, start: int, end: int) -> _Values:
     """The values of one signal: at the start, at its samples, and where one is too old."""
-    max_age = queue.signal.max_age
-    first = bisect_right(queue.times, start)
-    stop = bisect_right(queue.times, end, first)
-    current = _NAN
-    if first and queue.times[first - 1] > lost:
-        current = queue.values[first - 1]
+    times, values, max_age = queue.times, queue.values, queue.signal.max_age
+    first = bisect_right(times, start)
+    stop = bisect_right(times, end, first)
+    current = values[first - 1] if first and times[first - 1] > lost else _NAN
     if max_age is None:
-        return _Values(
-            [start, *queue.times[first:stop]],
-            ([current, *queue.values[first:stop]],),
-        )
-    times, values = [start], [current]
-    expiry = queue.times[first - 1] + max_age + 1 if first else end + 1
-    if expiry <= start:
-        values[0], expiry = _NAN, end + 1
+        return _Values([start, *times[first:stop]], ([current, *values[first:stop]],))
+    if first and start - times[first - 1] > max_age:
+        current = _NAN
+    if queue.interrupted > start:
+        between = _with_expiries(queue, first, stop, start, max_age)
+        at, known = [time for time, _ in between], [value for _, value in between]
+    else:
+        at, known = times[first:stop], values[first:stop]
+    expiry = times[stop - 1] + max_age + 1 if stop else start
+    if start < expiry <= end and (stop == len(times) or expiry < times[stop]):
+        return _Values([start, *at, expiry], ([current, *known, _NAN],))
+    return _Values([start, *at], ([current, *known],))
+
+
+def _with_expiries(
+    queue: SampleQueue, first: int, stop: int, start: int, max_age: int
+) -> list[tuple[int, float]]:
+    """Samples of a queue, and NaN where the one before is too old, after the start."""
+    found: list[tuple[int, float]] = []
+    expiry = queue.times[first - 1] + max_age + 1 if first else start
     for time, value in zip(queue.times[first:stop], queue.values[first:stop], strict=True):
-        if expiry < time:
-            times.append(expiry)
-            values.append(_NAN)
-        times.append(time)
-        values.append(value)
+        if start < expiry < time:
+            found.append((expiry, _NAN))
+        found.append((time, value))
         expiry = time + max_age + 1
-    if expiry <= end and (stop == len(queue.times) or expiry < queue.times[stop]):
-        times.append(expiry)
-        values.append(_NAN)
-    return _Values(times, (values,))
+    return found
 
 
 def _joined(each: Sequence[_Values], start: int) -> _Values:
@@ -251,25 +256,34 @@ def _spread(one: _Values, times: Sequence[int]) -> list[float]:
 # Steps
 
 
-def _steps(function: _Function, history: _Values, end: int) -> _Steps:
+def _steps(function: _Function, history: _Values, end: int, since: int | None = None) -> _Steps:
+    """The states of a function up to an end, from the one in force at `since` on, or all."""
     if not function.parts:
         return _Steps(history.times, function.states(history.times, *history.values))
     parts = [
         _persistence(_steps(part, history, end), duration, end) for part, duration in function.parts
     ]
     times = sorted({*history.times, *(time for part in parts for time in part.times)})
-    columns = [_spread(_Values(history.times, (each,)), times) for each in history.values]
-    states = [[part.states[i] for i in _places(part.times, times)] for part in parts]
+    if since is not None:
+        del times[: bisect_right(times, since) - 1]
+    places = [bisect_right(history.times, time) - 1 for time in times] if history.values else ()
+    columns = [[each[i] for i in places] for each in history.values]
+    states = [_at(part, times) for part in parts]
     return _Steps(times, function.states(times, *columns, *states))
 
 
-def _places(own: Sequence[int], times: Sequence[int]) -> list[int]:
-    """For each time, the index of the step in force."""
-    return [bisect_right(own, time) - 1 for time in times]
+def _at(steps: _Steps, times: Sequence[int]) -> list[int]:
+    """The states at times that are not before the first step."""
+    own, states = steps.times, steps.states
+    if times[0] >= own[-1]:
+        return states[-1:] * len(times)
+    return [states[bisect_right(own, time) - 1] for time in times]
 
 
 def _persistence(arg: _Steps, duration: int, end: int) -> _Steps:
     """The truth of `arg` throughout `[t - duration, t]`; only changes are steps."""
+    if arg.states.count(arg.states[0]) == len(arg.states):
+        return _constant(arg.states[0], arg.times[0], duration, end)
     over = {FALSE: arg.times[0] - 1, UNKNOWN: arg.times[0] + duration, TRUE: 0}
     """For each state, the time from which on it is in no interval; unless it is the current one."""
     later = (time + duration for time in arg.times)
@@ -293,6 +307,15 @@ def _persistence(arg: _Steps, duration: int, end: int) -> _Steps:
     return _Steps(times, states)
 
 
+def _constant(state: int, start: int, duration: int, end: int) -> _Steps:
+    """`_persistence` of a state that does not change."""
+    if state != TRUE:
+        return _Steps([start], [state])
+    if start + duration > end:
+        return _Steps([start], [UNKNOWN])
+    return _Steps([start, start + duration], [UNKNOWN, TRUE])
+
+
 # Ticks
 
 
@@ -300,8 +323,8 @@ def _truths(
     group: _Group, history: _Values, before: int, ticks: Sequence[int]
 ) -> dict[str, list[Truth]]:
     """The truth value of each proposition of a group at each tick, by the steps since the last."""
-    if group.lookback:
-        each = [(one, _steps(one.function, history, ticks[-1])) for one in group.members]
+    if any(one.function.parts for one in group.members):
+        each = [(one, _steps(one.function, history, ticks[-1], before)) for one in group.members]
         return {
             one.name: _at_ticks(one, steps.states, _ranges(steps.times, before, ticks))
             for one, steps in each
