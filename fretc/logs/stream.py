@@ -235,9 +235,10 @@ class SampleStream:
 
         Nothing is judged. There are no values before the first tick is placed.
         """
-        if self._ended or (self._ticking.last is None and not self._ticking.due(time)):
+        last = self._ticking.last
+        if self._ended or (last is None and not self._ticking.due(time)):
             return ()
-        time = max(time, (self._ticking.last or 0) + 1)
+        time = max(time, (last or 0) + 1)
         return self._ticks([*self._ticking.due(time), time], time)
 
     def _untimely(self, topic: str, time: int) -> Diagnostic | None:
@@ -285,11 +286,13 @@ class SampleStream:
             return over
         if not 0 <= time < LATEST:
             return diagnostic("stream_time_cannot_advance", time=time)
-        if (many := _too_many(self._ticking.due(time))) is not None:
+        due = self._ticking.due(time)
+        if not due:
+            self._ticking.passed = max(time, self._ticking.passed)
+            return ()
+        if (many := _too_many(due)) is not None:
             return many
         times = self._ticking.until(time)
-        if not times:
-            return ()
         ticks = self._ticks(times, self._ticking.passed)
         self._remember(times)
         return ticks

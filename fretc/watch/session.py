@@ -96,6 +96,9 @@ class Session:
         self.interrupted = False
         """Whether the source is not connected."""
         self._ahead: tuple[Truth, ...] | None = None
+        self._states: tuple[State, ...] = ()
+        self._basis: tuple[object, ...] | None = None
+        """What `_states` was made of, besides the ticks of the statuses."""
         self._final: Mapping[str, str] = {}
         """The verdicts of a run that has ended."""
         self.topics = {name: ArrivedMessages() for name in sorted(self._decoder.topics)}
@@ -240,7 +243,7 @@ class Session:
     # The state
 
     def states(self, *, ahead: bool = True) -> tuple[State, ...]:
-        """The present state of each requirement.
+        """The present state of each requirement; the same tuple until one of them may have changed.
 
         Args:
             ahead: whether messages since the last tick count for `obligation_pending`.
@@ -253,7 +256,18 @@ class Session:
             self._ahead if ahead and self._ahead is not None else monitors.obligation_pending()
         )
         pending = (None,) * len(pending) if self.interrupted else pending
-        read = zip(monitors.statuses(), pending, monitors.last_triggers(), strict=True)
+        statuses = monitors.statuses()
+        basis = statuses, pending, self._final, bool(self._missed)
+        if self._basis is None or statuses is not self._basis[0] or basis != self._basis:
+            self._basis = basis
+            self._states = self._states_of(statuses, pending)
+        return self._states
+
+    def _states_of(
+        self, statuses: tuple[RequirementStatus, ...], pending: tuple[Truth, ...]
+    ) -> tuple[State, ...]:
+        monitors = self._monitors
+        read = zip(statuses, pending, monitors.last_triggers(), strict=True)
         return tuple(
             State(
                 status.requirement,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import pairwise
 from math import cos, hypot, inf, isfinite, nan, sin
 
 import numpy as np
@@ -36,6 +37,8 @@ class ScanReader:
         self._stated: Mapping[str, float] = {}
         self._limits: FloatLimits | None = None
         self._angles: Numbers = np.zeros(0)
+        corners = [*signal.footprint, signal.footprint[0]]
+        self._edges = [(*a, *b) for a, b in pairwise(corners)]
         x, y, _ = signal.sensor
         self._reach = max(hypot(a - x, b - y) for a, b in signal.footprint) + SLACK
 
@@ -80,25 +83,18 @@ class ScanReader:
         metres = scaled(ranges.astype(np.float64), self._signal.unit.factor)
         first = int(metres.argmin())
         nearest = float(metres[first])
-        if float(ranges.min(initial=0)) < 0 or not self._is_usual(metres):
+        if nearest < 0 or not _is_usual(metres):
             return None
         near = np.flatnonzero(metres <= self._bound(nearest, first))
         ends = places(metres[near], self._angles[near], self._signal.sensor)
         return float(distances(ends, self._signal.footprint).min())
-
-    def _is_usual(self, metres: Numbers) -> bool:
-        """Whether no measured beam is too long for the outline's arithmetic."""
-        finite = metres[np.isfinite(metres)] if not isfinite(float(metres.max())) else metres
-        return float(finite.max()) < TOO_FAR
 
     def _bound(self, nearest: float, beam: int) -> float:
         """The length of a beam, in metres, from which on no end can be the nearest."""
         x, y, yaw = self._signal.sensor
         angle = float(self._angles[beam]) + yaw
         end = x + nearest * cos(angle), y + nearest * sin(angle)
-        corners = self._signal.footprint
-        least = min(hypot(end[0] - a, end[1] - b) for a, b in corners)
-        return least + self._reach
+        return min(_to_segment(*end, *edge) for edge in self._edges) + self._reach
 
     def _meaning_of(self, ranges: Singles) -> set[Reading]:
         """What the elements mean that are no measurements."""
@@ -110,3 +106,19 @@ class ScanReader:
             (np.isfinite(ranges), invalid.other),
         )
         return {reading for chosen, reading in kinds if chosen.any()}
+
+
+def _is_usual(metres: Numbers) -> bool:
+    """Whether no measured beam is too long for the outline's arithmetic."""
+    longest = float(metres.max())
+    if not isfinite(longest):
+        longest = float(metres[np.isfinite(metres)].max())
+    return longest < TOO_FAR
+
+
+def _to_segment(x: float, y: float, x1: float, y1: float, x2: float, y2: float) -> float:
+    """The distance of a point to a segment, up to rounding."""
+    ax, ay = x2 - x1, y2 - y1
+    part = ((x - x1) * ax + (y - y1) * ay) / ((ax * ax + ay * ay) or 1.0)
+    part = min(1.0, max(0.0, part))
+    return hypot(x - x1 - part * ax, y - y1 - part * ay)
