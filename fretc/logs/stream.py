@@ -18,10 +18,11 @@ from fretc.logs import log_diagnostics
 from fretc.logs.mcap.damage import LATEST
 from fretc.logs.messages.python_messages import PythonMessage, Value, sampled
 from fretc.logs.signals.propositions import truth_values
-from fretc.logs.signals.samples import Gap, Late, Recording, Samples
+from fretc.logs.signals.samples import Gap
 from fretc.logs.signals.signals import FieldError
 from fretc.logs.signals.traces import proposition_states
 from fretc.logs.windows.sample_queue import SampleQueue
+from fretc.logs.windows.window_recording import window_recording
 from fretc.logs.windows.window_truth import Window, WindowTruth
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Signal
@@ -351,15 +352,17 @@ class SampleStream:
             start = max(start, self._window())
         elif self._declarations.clock.period is not None:
             first = start
-        samples = {name: queue.samples() for name, queue in self._queues.items()}
-        recording = self._recording(start, end, samples)
+        late = {
+            topic: [(span.first, span.last) for span in spans]
+            for topic, spans in self._late.items()
+        }
+        recording = window_recording((start, end), self._queues, self._gaps, late)
         ticks = np.array([*before, *times], np.int64)
-        return {
-            name: truth_values(
-                proposition_states(name, self._declarations, recording, ticks, first)
-            )[len(before) :]
+        states = {
+            name: proposition_states(name, self._declarations, recording, ticks, first)
             for name in names
         }
+        return {name: truth_values(each[len(before) :]) for name, each in states.items()}
 
     def _window(self) -> int:
         """The time from which on samples affect later ticks."""
@@ -386,27 +389,6 @@ class SampleStream:
             self._gaps = [gap for gap in self._gaps if gap not in over or gap == last]
         for queue in self._queues.values():
             queue.forget(self._window())
-
-    def _recording(self, start: int, end: int, samples: Mapping[str, Samples]) -> Recording:
-        return Recording(
-            name="",
-            sha256="",
-            size=0,
-            start_ns=start,
-            end_ns=end,
-            samples=samples,
-            ticks=np.zeros(0, np.int64),
-            gaps=tuple(self._gaps),
-            topics={},
-            nearest={},
-            findings=(),
-            intact=not self._gaps,
-            late={
-                topic: Late(*np.array([(span.first, span.last) for span in spans], np.int64).T)
-                for topic, spans in self._late.items()
-                if spans
-            },
-        )
 
 
 def lookback(expression: e.Expression) -> int:

@@ -204,7 +204,8 @@ def test_numbers_have_the_values_of_the_official_decoder(
 ) -> None:
     source = channel("one/msg/T", CUSTOM)
     usual = custom(b"abc", 1.0, 5, 1, 1, (1.0, 2.0, 3.0))
-    sent = [usual, *(mutated(custom(*fields), mutation) for *fields, mutation in some), usual]
+    others = [mutated(custom(s, f, i, mode, b, a), how) for s, f, i, mode, b, a, how in some]
+    sent = [usual, *others, usual]
     same(declare(NUMBERS), [(source, each) for each in sent])
 
 

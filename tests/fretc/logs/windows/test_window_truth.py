@@ -2,6 +2,8 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import isnan
+from typing import Any
 
 import numpy as np
 import pytest
@@ -54,7 +56,8 @@ expr = "x - pre(9 cm, x) <= 0 cm"
 [proposition.always]
 expr = "(x < 5 cm or x >= 5 cm or true) for 25 ns"
 """
-SINGLE, DOUBLE, EXACT = map(np.dtype, (np.float32, np.float64, np.longdouble))
+KINDS: list[np.dtype[Any]] = [np.dtype(each) for each in ("f4", "f8", np.longdouble)]
+SINGLE, DOUBLE, EXACT = KINDS
 
 
 @dataclass(frozen=True)
@@ -66,7 +69,7 @@ class Step:
     """Nanoseconds since the step before."""
     delay: int
     values: tuple[float, float]
-    kind: np.dtype[np.floating]  # type: ignore[type-arg]
+    kind: np.dtype[Any]
 
 
 steps = st.builds(
@@ -80,8 +83,8 @@ steps = st.builds(
 
 
 def values(step: Step) -> dict[str, Value]:
-    def value(number: float, kind: object = step.kind) -> Value:
-        return (number, None if number != number else kind, "")  # type: ignore[return-value]
+    def value(number: float, kind: np.dtype[Any] = step.kind) -> Value:
+        return number, None if isnan(number) else kind, ""
 
     match step.topic:
         case "/x":
