@@ -127,7 +127,11 @@ class Extract:
 class Extraction:
     """The reader of one stream."""
 
-    def __init__(self, stream: ChannelDefinition, signals: Sequence[Signal]) -> None:
+    def __init__(
+        self, stream: ChannelDefinition, signals: Sequence[Signal], few: int | None = None
+    ) -> None:
+        """`few`: bytes of messages up to which the official decoder reads them; None: the usual."""
+        self._few = _FEW if few is None else few
         self.signals = list(signals)
         """The readable signals; the others have a diagnostic."""
         self.diagnostics: dict[str, Diagnostic] = {}
@@ -159,7 +163,7 @@ class Extraction:
         if self._decode is None:
             return extract
         slow: Sequence[int] = range(len(payloads))
-        if self._shape is not None and payloads.sizes.sum() >= _FEW:
+        if self._shape is not None and payloads.sizes.sum() >= self._few:
             if not self._placed(
                 self._shape
             ):  # one message shows which signals have no fixed position
@@ -173,6 +177,23 @@ class Extraction:
         for row in slow:
             self._one_by_one(row, bytes(payloads.payload(row)), extract)
         return extract
+
+    def kind(self, signal: Signal) -> np.dtype[Any]:
+        """The type of the samples of a signal, unless a whole number of 2^53 and more is one."""
+        return Extract.empty(0, [signal], self._single).values[signal.name].dtype
+
+    def known_layouts(self, size: int) -> Sequence[Layout]:
+        """The layouts of earlier messages of a size; those with more follow later."""
+        if self._layouts is None or self._shape is None:
+            return ()
+        if self._sought is None or len(self._sought) != len(self.signals):
+            return ()
+        return self._layouts.known(size)
+
+    @property
+    def stamp_places(self) -> tuple[Where, ...]:
+        """The seconds and nanoseconds of `header.stamp`; empty: they have no fixed position."""
+        return _stamp_places(self._shape) if self._shape is not None else ()
 
     def _refuse(self, signal: Signal, diagnostic: Diagnostic) -> None:
         self.signals.remove(signal)
@@ -317,7 +338,9 @@ class Extraction:
             field = locations[signal.path.fields]
             if field.count is None:
                 matrix = _matrix(single[signal.path.fields])
-                values = samples(signal, matrix, sibling_values)
+                # An infinity is none of the values of an enumeration, and a sample of it unknown.
+                is_enum = bool(signal.values)
+                values = matrix[:, 0] if is_enum else samples(signal, matrix, sibling_values)
             else:
                 values = self._reduced(signal, payloads, rows, field, sibling_values)
             if signal.values:
@@ -326,7 +349,7 @@ class Extraction:
                 extract.put(signal, rows, values)
         if (RANGE_MIN,) in single:
             self._note_nearest(_numbers(single[RANGE_MIN,]), extract)
-        places = _stamp_places(self._shape) if self._shape is not None else ()
+        places = self.stamp_places
         if places:
             seconds, nanoseconds = (single[place].astype(np.int64) for place in places)
             extract.stamps[rows] = seconds * 10**9 + nanoseconds

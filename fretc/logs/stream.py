@@ -11,20 +11,19 @@ from __future__ import annotations
 from bisect import bisect_left, bisect_right
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import field
-from math import isnan
-from typing import Any
 
 import numpy as np
 
 from fretc.logs import log_diagnostics
 from fretc.logs.mcap.damage import LATEST
 from fretc.logs.messages.python_messages import PythonMessage, Value, sampled
-from fretc.logs.signals.enum_values import UnmappedSamples, shown
 from fretc.logs.signals.propositions import truth_values
-from fretc.logs.signals.samples import EXACT, Gap, Late, Recording, Samples
+from fretc.logs.signals.samples import Gap
 from fretc.logs.signals.signals import FieldError
 from fretc.logs.signals.traces import proposition_states
+from fretc.logs.windows.sample_queue import SampleQueue
+from fretc.logs.windows.window_recording import window_recording
+from fretc.logs.windows.window_truth import Window, WindowTruth
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Signal
 from fretish.bindings.expressions import ticks_back
@@ -36,6 +35,8 @@ from monitors.ticking import Ticking, late
 
 MOST_TICKS = 1_000_000
 """The most ticks that may pass at once: more are probably a mistake in the unit of time."""
+_FEW = 64
+"""The most ticks that are faster to evaluate in lists than in arrays."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,10 +89,10 @@ class SampleStream:
     def __init__(self, declarations: Declarations, propositions: Collection[str]) -> None:
         self._declarations = declarations
         self._propositions = tuple(propositions)
-        self._lookback = max(
-            (lookback(declarations.propositions[name].expression) for name in propositions),
-            default=0,
-        )
+        lookbacks = {
+            name: lookback(declarations.propositions[name].expression) for name in propositions
+        }
+        self._lookback = max(lookbacks.values(), default=0)
         self._back = 1 + max(
             (ticks_back(declarations.propositions[name].expression) for name in propositions),
             default=0,
@@ -103,8 +104,10 @@ class SampleStream:
             for name in e.truths(declarations.propositions[proposition].expression)
         }
         self._queues = {
-            name: _Queue(signal, name in flags) for name, signal in declarations.signals.items()
+            name: SampleQueue(signal, name in flags)
+            for name, signal in declarations.signals.items()
         }
+        self._window_truth = WindowTruth(declarations, self._queues, lookbacks)
         clock = declarations.clock
         self._ticking = Ticking(_topics(declarations), clock.period, clock.phase, clock.topic)
         self._begin, self._end = LATEST, 0
@@ -148,7 +151,7 @@ class SampleStream:
         if wrong is not None:
             return wrong
         read = PythonMessage(message)
-        values: list[tuple[_Queue, Value]] = []
+        values: list[tuple[SampleQueue, Value]] = []
         for signal in signals:
             try:
                 read_sample = sampled(signal, read)
@@ -163,7 +166,7 @@ class SampleStream:
         self._ticking.arrive(topic, time)
         return None
 
-    def _put(self, topic: str, time: int, values: Iterable[tuple[_Queue, Value]]) -> None:
+    def _put(self, topic: str, time: int, values: Iterable[tuple[SampleQueue, Value]]) -> None:
         for queue, (value, kind, foreign) in values:
             queue.put(time, value, kind, foreign)
         self._begin, self._end = min(self._begin, time), max(self._end, time)
@@ -233,9 +236,10 @@ class SampleStream:
 
         Nothing is judged. There are no values before the first tick is placed.
         """
-        if self._ended or (self._ticking.last is None and not self._ticking.due(time)):
+        last = self._ticking.last
+        if self._ended or (last is None and not self._ticking.due(time)):
             return ()
-        time = max(time, (self._ticking.last or 0) + 1)
+        time = max(time, (last or 0) + 1)
         return self._ticks([*self._ticking.due(time), time], time)
 
     def _untimely(self, topic: str, time: int) -> Diagnostic | None:
@@ -254,7 +258,7 @@ class SampleStream:
         return tuple(
             finding
             for queue in self._queues.values()
-            if (finding := queue.finding(self._ticking.start or 0)) is not None
+            if (finding := _finding(queue, self._ticking.start or 0)) is not None
         )
 
     # Ticks
@@ -283,7 +287,11 @@ class SampleStream:
             return over
         if not 0 <= time < LATEST:
             return diagnostic("stream_time_cannot_advance", time=time)
-        if (many := _too_many(self._ticking.due(time))) is not None:
+        due = self._ticking.due(time)
+        if not due:
+            self._ticking.passed = max(time, self._ticking.passed)
+            return ()
+        if (many := _too_many(due)) is not None:
             return many
         times = self._ticking.until(time)
         ticks = self._ticks(times, self._ticking.passed)
@@ -316,25 +324,45 @@ class SampleStream:
         """The values at each of the new ticks, in a log that continues up to `end`."""
         if not times:
             return ()
+        truth = self._truth_in_lists(times)
+        rest = [name for name in self._propositions if name not in truth]
+        if rest:
+            truth |= self._truth_in_arrays(rest, times, end)
+        names = self._propositions
+        return tuple(
+            ClockTick(time, {name: truth[name][i] for name in names})
+            for i, time in enumerate(times)
+        )
+
+    def _truth_in_lists(self, times: Sequence[int]) -> dict[str, list[Truth]]:
+        """The propositions that are faster to evaluate in lists; none of them in some windows."""
+        if not self._recent or self._declarations.clock.period is None or len(times) > _FEW:
+            return {}
+        lost = max((gap[1] for gap in self._gaps), default=-1)
+        if lost >= self._window() or any(self._late.values()):
+            return {}
+        return self._window_truth.truth(Window(self._begin, self._recent[-1], lost), times)
+
+    def _truth_in_arrays(
+        self, names: Sequence[str], times: Sequence[int], end: int
+    ) -> dict[str, list[Truth]]:
         start, first = self._begin, None
         before = self._recent
         if before:
             start = max(start, self._window())
         elif self._declarations.clock.period is not None:
             first = start
-        samples = {name: queue.samples() for name, queue in self._queues.items()}
-        recording = self._recording(start, end, samples)
-        ticks = np.array([*before, *times], np.int64)
-        truth = {
-            name: truth_values(
-                proposition_states(name, self._declarations, recording, ticks, first)
-            )
-            for name in self._propositions
+        late = {
+            topic: [(span.first, span.last) for span in spans]
+            for topic, spans in self._late.items()
         }
-        return tuple(
-            ClockTick(time, {name: values[i] for name, values in truth.items()})
-            for i, time in enumerate(times, len(before))
-        )
+        recording = window_recording((start, end), self._queues, self._gaps, late)
+        ticks = np.array([*before, *times], np.int64)
+        states = {
+            name: proposition_states(name, self._declarations, recording, ticks, first)
+            for name in names
+        }
+        return {name: truth_values(each[len(before) :]) for name, each in states.items()}
 
     def _window(self) -> int:
         """The time from which on samples affect later ticks."""
@@ -355,31 +383,12 @@ class SampleStream:
             for span in new:
                 span.counted = True
             spans[:] = [span for span in spans if span.last > times[-1]]
-        over = [i for i, gap in enumerate(self._gaps) if gap[1] < self._window()]
-        del self._gaps[: over[-1] if over else 0]
+        over = [gap for gap in self._gaps if gap[1] < self._window()]
+        if over:  # the last one still hides the samples before it
+            last = max(over, key=lambda gap: gap[1])
+            self._gaps = [gap for gap in self._gaps if gap not in over or gap == last]
         for queue in self._queues.values():
             queue.forget(self._window())
-
-    def _recording(self, start: int, end: int, samples: Mapping[str, Samples]) -> Recording:
-        return Recording(
-            name="",
-            sha256="",
-            size=0,
-            start_ns=start,
-            end_ns=end,
-            samples=samples,
-            ticks=np.zeros(0, np.int64),
-            gaps=tuple(self._gaps),
-            topics={},
-            nearest={},
-            findings=(),
-            intact=not self._gaps,
-            late={
-                topic: Late(*np.array([(span.first, span.last) for span in spans], np.int64).T)
-                for topic, spans in self._late.items()
-                if spans
-            },
-        )
 
 
 def lookback(expression: e.Expression) -> int:
@@ -388,78 +397,12 @@ def lookback(expression: e.Expression) -> int:
     return inner + expression.duration if isinstance(expression, e.Persistence) else inner
 
 
-@dataclass(slots=True)
-class _Queue:
-    """The samples of one signal, in order of time; those of equal times in order of arrival."""
-
-    signal: Signal
-    is_flag: bool
-    """Whether the signal is a truth value."""
-    times: list[int] = field(default_factory=list)
-    values: list[float] = field(default_factory=list)
-    kind: np.dtype[Any] | None = None
-    """The number type; None: every sample is unknown."""
-    count: int = 0
-    """The number of samples so far."""
-    foreign: UnmappedSamples | None = None
-    """Samples that are not among the values of the signal, or not a truth value."""
-    first_foreign: int = 0
-    """The time of the first of them."""
-
-    def finding(self, start: int) -> Diagnostic | None:
-        """F423 or F424, if samples were unmapped; the stream began at `start`."""
-        if self.foreign is None:
-            return None
-        find = log_diagnostics.no_truth if self.is_flag else log_diagnostics.foreign_value
-        return find(self.signal, self.foreign, self.count, self.first_foreign - start)
-
-    def refusal(self, kind: np.dtype[Any] | None, passed: int) -> Diagnostic | None:
-        """F421: in a wider number type, samples of judged ticks would compare differently."""
-        if kind is None or self.kind is None or np.promote_types(self.kind, kind) == self.kind:
-            return None
-        if not self.times or self.times[0] >= passed:
-            return None
-        return diagnostic(
-            "stream_types_differ",
-            self.signal.span,
-            signal=self.signal.name,
-            before=_words(self.kind),
-            now=_words(kind),
-        )
-
-    def put(self, time: int, value: float, kind: np.dtype[Any] | None, foreign: str) -> None:
-        """Add one sample, after those of the same time; `foreign`: the text of an unmapped one."""
-        if not foreign and self.is_flag and value not in (0, 1) and not isnan(value):
-            foreign = shown(value)
-        if foreign:
-            self.first_foreign = time if self.foreign is None else self.first_foreign
-            unmapped = UnmappedSamples(1, self.count, foreign)
-            self.foreign = self.foreign.followed(unmapped) if self.foreign else unmapped
-        self.count += 1
-        if kind is not None:
-            self.kind = kind if self.kind is None else np.promote_types(self.kind, kind)
-        index = bisect_right(self.times, time)
-        self.times.insert(index, time)
-        self.values.insert(index, value)
-
-    def forget(self, start: int) -> None:
-        """Drop the samples before the one that is in force when the window starts."""
-        count = max(0, bisect_left(self.times, start) - 1)
-        del self.times[:count]
-        del self.values[:count]
-
-    def samples(self) -> Samples:
-        """All remaining samples."""
-        values = np.array(self.values, self.kind or np.float32)
-        times = np.array(self.times, np.int64)
-        return Samples(times, values, self.signal.scale, self.signal.values)
-
-
-_WORDS = {4: "32-bit floats", 8: "64-bit floats", EXACT.itemsize: "whole numbers from 2^53 on"}
-
-
-def _words(kind: np.dtype[Any]) -> str:
-    return _WORDS[kind.itemsize]
+def _finding(queue: SampleQueue, start: int) -> Diagnostic | None:
+    """F423 or F424, if samples were unmapped; the stream began at `start`."""
+    if queue.foreign is None:
+        return None
+    find = log_diagnostics.no_truth if queue.is_flag else log_diagnostics.foreign_value
+    return find(queue.signal, queue.foreign, queue.count, queue.first_foreign - start)
 
 
 def _topics(declarations: Declarations) -> frozenset[str]:

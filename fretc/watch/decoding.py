@@ -21,6 +21,7 @@ from fretc.logs.mcap.damage import LATEST
 from fretc.logs.mcap.payloads import Payloads
 from fretc.logs.messages.python_messages import Value
 from fretc.logs.signals.enum_values import UNKNOWN
+from fretc.watch.single_messages import SingleMessages
 from fretc.watch.sources.source import Arrival, Channel
 from fretish.bindings.declarations import Declarations, Signal, short_type
 from fretish.classes.frozen import dataclass
@@ -46,8 +47,6 @@ class Timed:
 
 @dataclass(slots=True)
 class _Topic:
-    names: tuple[str, ...]
-    """All signals that read the topic."""
     signals: list[Signal]
     """The signals that the messages of the topic have."""
     latest: int | None = None
@@ -55,6 +54,8 @@ class _Topic:
     held: list[int] = field(default_factory=list)
     """The arrivals of messages before the first one with a time."""
     types: dict[str, None] = field(default_factory=dict)
+    unknown: Mapping[str, Value] = field(default_factory=dict)
+    """An unknown sample of each signal."""
 
 
 class Decoder:
@@ -67,12 +68,13 @@ class Decoder:
         names |= {declarations.clock.topic} if declarations.clock.topic else set()
         self._topics = {
             name: _Topic(
-                tuple(signal.name for signal in signals if signal.path.topic == name),
                 [signal for signal in signals if signal.path.topic == name],
+                unknown={each.name: _NOTHING for each in signals if each.path.topic == name},
             )
             for name in names
         }
         self._extractions: dict[Channel, Extraction] = {}
+        self._single: dict[Channel, SingleMessages] = {}
         self.undecoded: dict[str, int] = {}
         """For each topic, the number of messages that could not be decoded."""
 
@@ -86,30 +88,52 @@ class Decoder:
         topic = self._topics.get(arrival.channel.topic)
         if topic is None:
             return [], []
+        reader = self._single.get(arrival.channel)
+        single = None if reader is None else reader.read(arrival.payload)
+        if single is not None:
+            time = self._placed(arrival, single.stamp)
+            values = {**topic.unknown, **single.values} if time else topic.unknown
+            return self._timed(arrival, topic, time, values), []
+        return self._read_by_extraction(arrival, topic)
+
+    def _read_by_extraction(
+        self, arrival: Arrival, topic: _Topic
+    ) -> tuple[list[Timed], list[Diagnostic]]:
+        """A message that is the first one of its layout, or otherwise unusual."""
         problems: list[Diagnostic] = []
         if arrival.channel not in self._extractions:
             problems = self._open(arrival.channel, topic)
-        extract = self._extractions[arrival.channel].extract(Payloads.of([arrival.payload]))
+        extraction = self._extractions[arrival.channel]
+        extract = extraction.extract(Payloads.of([arrival.payload]))
         problems += self._refusals(arrival.channel, topic)
-        time = self._placed(arrival, extract)
-        nothing = dict.fromkeys(topic.names, _NOTHING)
+        is_decoded = bool(extract.decoded[0])
+        time: int | None = None
+        if is_decoded or self._time is not TimeSource.HEADER_STAMP:
+            time = self._placed(arrival, int(extract.stamps[0]) if extract.stamped[0] else None)
         signals = topic.signals if time != 0 else ()
-        values = {**nothing, **{each.name: _value(extract, each.name) for each in signals}}
+        values = {**topic.unknown, **{each.name: _value(extract, each.name) for each in signals}}
         name = arrival.channel.topic
-        if not bool(extract.decoded[0]) and self._extractions[arrival.channel].reads:
+        if not is_decoded and extraction.reads:
             self.undecoded[name] = self.undecoded.get(name, 0) + 1
+        return self._timed(arrival, topic, time, values), problems
+
+    def _timed(
+        self, arrival: Arrival, topic: _Topic, time: int | None, values: Mapping[str, Value]
+    ) -> list[Timed]:
+        """The message on the declared clock, with those that waited for its time."""
+        name = arrival.channel.topic
         if time is not None and time >= LATEST:
-            return [], problems
+            return []
         if not time and topic.latest is None:
             topic.held = [*topic.held, arrival.log_time][-MOST_HELD:]
-            return [], problems
+            return []
         topic.latest = time or topic.latest
         assert topic.latest is not None, "what has no time waits for one"
+        message = Timed(name, topic.latest, arrival.log_time, values)
+        if not topic.held:
+            return [message]
         held, topic.held = topic.held, []
-        return [
-            *(Timed(name, topic.latest, each, nothing) for each in held),
-            Timed(name, topic.latest, arrival.log_time, values),
-        ], problems
+        return [*(Timed(name, topic.latest, each, topic.unknown) for each in held), message]
 
     def _open(self, channel: Channel, topic: _Topic) -> list[Diagnostic]:
         """Open a channel at its first message: its type may differ from the one in the bindings."""
@@ -123,7 +147,9 @@ class Decoder:
                 problems.append(log_diagnostics.wrong_type(signal, channel.schema_name))
         if len(topic.types) > 1 and topic.signals and topic.signals[0].type is None:
             problems.append(log_diagnostics.several_types(topic.signals[0], list(topic.types)))
-        self._extractions[channel] = Extraction(stream_of(channel), topic.signals)
+        extraction = Extraction(stream_of(channel), topic.signals, few=0)
+        self._extractions[channel] = extraction
+        self._single[channel] = SingleMessages(extraction)
         return problems
 
     def _refusals(self, channel: Channel, topic: _Topic) -> list[Diagnostic]:
@@ -134,17 +160,15 @@ class Decoder:
             topic.signals.remove(signal)
         return [refused[signal.name] for signal in missing]
 
-    def _placed(self, arrival: Arrival, extract: Extract) -> int | None:
-        """The time on the declared clock; 0: it was never set; None: it is unknown."""
+    def _placed(self, arrival: Arrival, stamp: int | None) -> int:
+        """The time of a decoded message on the declared clock; 0: it was never set."""
         match self._time:
             case TimeSource.LOG_TIME:
                 return arrival.log_time
             case TimeSource.PUBLISH_TIME:
                 return min(arrival.publish_time, LATEST)
             case TimeSource.HEADER_STAMP:
-                if not extract.decoded[0]:
-                    return None
-                return int(extract.stamps[0]) if extract.stamped[0] else arrival.log_time
+                return arrival.log_time if stamp is None else stamp
 
 
 def _value(extract: Extract, name: str) -> Value:

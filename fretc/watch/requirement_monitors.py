@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
+from operator import itemgetter
 
 from fretc.audit.measurements.judgement import judge
 from fretc.audit.plan import Plan
@@ -26,9 +27,15 @@ class RequirementMonitors:
         self.propositions = tuple(
             dict.fromkeys(name for monitor in self.monitors for name in monitor.PROPOSITIONS)
         )
+        self._picks = tuple(_pick(tuple(monitor.PROPOSITIONS)) for monitor in self.monitors)
         self.counted = frozenset(claim.id for claim in plan.claims if claim.chance is not None)
         """Requirements with a probability: no single run shows whether they hold."""
         self.ledger = Ledger(self.monitors, kept)
+        self._statuses: tuple[RequirementStatus, ...] | None = None
+        """The statuses after the last tick, once they were read."""
+        self._pending: list[tuple[list[tuple[Truth, ...]], Truth]] = []
+        """For each monitor the further ticks that were last tried, and whether an obligation was
+        open; empty: there are none since the last tick."""
 
     @property
     def count(self) -> int:
@@ -37,17 +44,27 @@ class RequirementMonitors:
 
     def step(self, tick: ClockTick) -> None:
         """Judge one more tick."""
+        self._forget()
         self.ledger.advance(tick.time, tick.truth)
 
     def withdraw(self, late: Withdrawn) -> None:
         """Mark ticks as unknown, and possibly insert one."""
+        self._forget()
         if late.tick is not None:
             self.ledger.insert(late.tick, self.propositions)
         self.ledger.withdraw(late.first, late.last, late.propositions)
 
+    def _forget(self) -> None:
+        self._statuses = None
+        self._pending.clear()
+
     def statuses(self) -> tuple[RequirementStatus, ...]:
-        """The state of each requirement if the trace ended here."""
-        return tuple(status for monitor in self.monitors for status in monitor.statuses())
+        """The state of each requirement if the trace ended here; the same tuple until a tick."""
+        if self._statuses is None:
+            self._statuses = tuple(
+                status for monitor in self.monitors for status in monitor.statuses()
+            )
+        return self._statuses
 
     def obligation_pending(self, rows: Iterable[Mapping[str, Truth]] = ()) -> tuple[Truth, ...]:
         """For each requirement, whether an obligation is open.
@@ -56,11 +73,16 @@ class RequirementMonitors:
             rows: further ticks, without an effect on the monitors.
         """
         ahead = tuple(rows)
-        results = (
-            monitor.statuses_after(ahead) if ahead else monitor.statuses()
-            for monitor in self.monitors
-        )
-        return tuple(status.obligation_pending for statuses in results for status in statuses)
+        if not ahead:
+            return tuple(status.obligation_pending for status in self.statuses())
+        picked = [[pick(row) for row in ahead] for pick in self._picks]
+        if not self._pending:
+            self._pending = [([], None)] * len(self.monitors)
+        for i, monitor in enumerate(self.monitors):
+            if self._pending[i][0] != picked[i]:
+                (pending,) = monitor.obligation_pending_after(picked[i])
+                self._pending[i] = picked[i], pending
+        return tuple(pending for _, pending in self._pending)
 
     def last_triggers(self) -> tuple[int | None, ...]:
         """For each requirement, the time of the last tick with a certain trigger."""
@@ -86,6 +108,13 @@ class RequirementMonitors:
         """The verdict in an audit of the run; a run that alone decides nothing is inconclusive."""
         decides = requirement not in self.counted or verdict in (kernel.VACUOUS, kernel.NO_DATA)
         return verdict if decides else str(kernel.INCONCLUSIVE)
+
+
+def _pick(names: Sequence[str]) -> Callable[[Mapping[str, Truth]], tuple[Truth, ...]]:
+    """A function that gives the row of some propositions."""
+    if len(names) < 2:
+        return lambda truth: tuple(truth[name] for name in names)
+    return itemgetter(*names)
 
 
 def _column(truth: Truth, ticks: int) -> Column:

@@ -6,6 +6,7 @@ up to which they are complete. Times are nanoseconds, with the meaning in `monit
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Mapping
 from dataclasses import field
 from functools import cached_property
@@ -47,6 +48,9 @@ class EndedRun:
     """The end of the watch, on the declared clock."""
 
 
+_RECENT = 20
+
+
 @dataclass(slots=True)
 class ArrivedMessages:
     """The messages of a topic that have arrived."""
@@ -55,7 +59,7 @@ class ArrivedMessages:
     first: int | None = None
     last: int | None = None
     """Receive times."""
-    recent: list[int] = field(default_factory=list)
+    recent: deque[int] = field(default_factory=lambda: deque(maxlen=_RECENT))
     """The last receive times, for the rate."""
 
     @property
@@ -64,9 +68,6 @@ class ArrivedMessages:
         if len(self.recent) < 2 or self.recent[-1] == self.recent[0]:
             return None
         return (len(self.recent) - 1) * 1e9 / (self.recent[-1] - self.recent[0])
-
-
-_RECENT = 20
 
 
 class Session:
@@ -98,6 +99,9 @@ class Session:
         self.interrupted = False
         """Whether the source is not connected."""
         self._ahead: tuple[Truth, ...] | None = None
+        self._states: tuple[State, ...] = ()
+        self._basis: tuple[object, ...] | None = None
+        """What `_states` was made of, besides the ticks of the statuses."""
         self._final: Mapping[str, str] = {}
         """The verdicts of a run that has ended."""
         self.topics = {name: ArrivedMessages() for name in sorted(self._decoder.topics)}
@@ -179,7 +183,7 @@ class Session:
             topic.count += 1
             topic.first = topic.first or arrival.log_time
             topic.last = arrival.log_time
-            topic.recent = [*topic.recent, arrival.log_time][-_RECENT:]
+            topic.recent.append(arrival.log_time)
         for message in messages:
             was_judged = self._take(message)
             self.disordered += is_behind and was_judged
@@ -254,7 +258,7 @@ class Session:
     # The state
 
     def states(self, *, ahead: bool = True) -> tuple[State, ...]:
-        """The present state of each requirement.
+        """The present state of each requirement; the same tuple until one of them may have changed.
 
         Args:
             ahead: whether messages since the last tick count for `obligation_pending`.
@@ -267,7 +271,18 @@ class Session:
             self._ahead if ahead and self._ahead is not None else monitors.obligation_pending()
         )
         pending = (None,) * len(pending) if self.interrupted else pending
-        read = zip(monitors.statuses(), pending, monitors.last_triggers(), strict=True)
+        statuses = monitors.statuses()
+        basis = statuses, pending, self._final, bool(self._missed)
+        if self._basis is None or statuses is not self._basis[0] or basis != self._basis:
+            self._basis = basis
+            self._states = self._states_of(statuses, pending)
+        return self._states
+
+    def _states_of(
+        self, statuses: tuple[RequirementStatus, ...], pending: tuple[Truth, ...]
+    ) -> tuple[State, ...]:
+        monitors = self._monitors
+        read = zip(statuses, pending, monitors.last_triggers(), strict=True)
         return tuple(
             State(
                 status.requirement,

@@ -55,6 +55,8 @@ class Watch:
         self.ended = False
         """Whether nothing more can be watched."""
         self._states: dict[str, State] = {}
+        self._seen: tuple[State, ...] = ()
+        """The states that were compared last."""
         self._late = 0
         self._began: int | None = None
         self._looked = 0
@@ -125,12 +127,13 @@ class Watch:
                 return
             found = self.session.arrive(arrival)
             assert not isinstance(found, Jump), "the first message of a run has none before it"
-        yield from self._recorded(arrival)
+        if self._recorder is not None:
+            yield from self._recorded(arrival)
         if found is not None or self._is_due(arrival.log_time):
             yield from self._passed(found)
-        for problem in self.session.problems:
-            yield DiagnosticEvent(problem)
-        self.session.problems.clear()
+        if self.session.problems:
+            yield from map(DiagnosticEvent, self.session.problems)
+            self.session.problems.clear()
         if arrival.log_time - self._began > SILENCE:
             yield from self._silences(arrival.log_time)
 
@@ -152,7 +155,11 @@ class Watch:
         if self.session.late_ticks > self._late:
             self._late = self.session.late_ticks
             yield LateMessages(self._late, dict(self.session.late))
-        for state in self.session.states(ahead=ahead):
+        states = self.session.states(ahead=ahead)
+        if states is self._seen:
+            return
+        self._seen = states
+        for state in states:
             before = self._states.get(state.requirement)
             if state != before:
                 self._states[state.requirement] = state

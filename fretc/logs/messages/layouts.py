@@ -241,6 +241,10 @@ class Layouts:
         """Layouts by size; at most `_MOST_LAYOUTS` in all."""
         self._count = 0
 
+    def known(self, size: int) -> Sequence[Layout]:
+        """The layouts of a size, the first one first."""
+        return self._layouts.get(size, ())
+
     def groups(self, payloads: Payloads) -> Iterator[MessageGroup]:
         """All messages, grouped by layout."""
         rest = np.arange(len(payloads))

@@ -74,7 +74,7 @@ def _plain(
     """
     if signal.reduce not in (Reduce.MIN, Reduce.MAX):
         return np.zeros(len(values), bool)
-    limits = _limits(signal, sibling_values, len(values))
+    limits = limits_of(signal, sibling_values, len(values))
     if limits is None or (signal.valid is not None and values.dtype != np.float32):
         return np.zeros(len(values), bool)
     unknown, stronger = (np.zeros(len(values), bool) for _ in range(2))
@@ -89,7 +89,7 @@ def _plain(
     return plain
 
 
-def _ends(reduce: Reduce, values: Values, limits: _FloatLimits) -> tuple[Values, Truths]:
+def _ends(reduce: Reduce, values: Values, limits: FloatLimits) -> tuple[Values, Truths]:
     """The least or the greatest measurement of each message, and whether there is one."""
     least, band = reduce is Reduce.MIN, limits.band()
     if band is not None and values.dtype == np.float32:
@@ -137,7 +137,7 @@ def _classes(
 
 
 @dataclass(frozen=True, slots=True)
-class _FloatLimits:
+class FloatLimits:
     """A test for measurements among 32-bit floats: each is finite, and compares as it should."""
 
     compared: Sequence[tuple[str, Singles]]
@@ -169,9 +169,9 @@ class _FloatLimits:
 _GREATEST = np.finfo(np.float32).max
 
 
-def _limits(
+def limits_of(
     signal: Signal, sibling_values: Mapping[str, Numbers], count: int
-) -> _FloatLimits | None:
+) -> FloatLimits | None:
     """The test for measurements; None: comparisons with 32-bit floats are not enough."""
     bounds = [] if signal.valid is None else _bounds(signal.valid)
     if bounds is None:
@@ -186,7 +186,7 @@ def _limits(
             return None
         same = bool((narrow == narrow[:1]).all())
         compared.append((op, narrow[:1, None] if same else narrow[:, None]))
-    return _FloatLimits(compared)
+    return FloatLimits(compared)
 
 
 @cache_by_identity
@@ -289,9 +289,9 @@ def _mean(readings: Values) -> float:
 
 # The robot's outline
 
-_SLACK = 1e-6
+SLACK = 1e-6
 """Metres by which rounding could make a distance too small, many times over."""
-_TOO_FAR = 1e9
+TOO_FAR = 1e9
 """Metres; farther ends of beams could give too large numbers in between."""
 
 
@@ -320,7 +320,7 @@ def _usual(signal: Signal, readings: Numbers, starts: Numbers, increments: Numbe
     last = starts + increments * readings.shape[1]
     most = np.where(np.isfinite(readings), np.abs(readings), -1.0).max(axis=1)
     sound: Truths = np.isfinite(starts) & np.isfinite(increments) & np.isfinite(last)
-    sound &= (most >= 0) & (scaled(most, signal.unit.factor) < _TOO_FAR)
+    sound &= (most >= 0) & (scaled(most, signal.unit.factor) < TOO_FAR)
     return sound & ~np.isneginf(readings).any(axis=1)
 
 
@@ -339,7 +339,7 @@ def _least(signal: Signal, ranges: Numbers, angles: Numbers) -> Numbers:
     rows = np.arange(len(ranges))
     least = distances(places(ranges[rows, first], angles[first], signal.sensor), signal.footprint)
     corners = np.array(signal.footprint) - np.array(signal.sensor[:2])
-    reach = float(np.hypot(*corners.T).max()) + _SLACK
+    reach = float(np.hypot(*corners.T).max()) + SLACK
     row, beam = np.nonzero(ranges <= (least + reach)[:, None])
     ends = places(ranges[row, beam], angles[beam], signal.sensor)
     np.minimum.at(least, row, distances(ends, signal.footprint))

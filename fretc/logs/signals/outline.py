@@ -73,7 +73,7 @@ def blind_share(
 
 def _edges(outline: Corners) -> tuple[Numbers, Numbers]:
     corners = np.array(outline, np.float64)
-    return corners, np.roll(corners, -1, axis=0)
+    return corners, np.concatenate((corners[1:], corners[:1]))
 
 
 def _to_segments(points: Numbers, starts: Numbers, ends: Numbers) -> Numbers:

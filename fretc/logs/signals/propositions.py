@@ -328,7 +328,7 @@ def with_persistences(
     """The history with the events of each `... for 200 ms`, and its states at all events."""
     persistences = {
         part: _persistence(_steps(part.arg, history), part.duration)
-        for part in _durations(expression)
+        for part in outermost_persistences(expression)
     }
     if not persistences:
         return history, {}
@@ -337,11 +337,13 @@ def with_persistences(
 
 
 @cache_by_identity
-def _durations(expression: e.Expression) -> tuple[e.Persistence, ...]:
+def outermost_persistences(expression: e.Expression) -> tuple[e.Persistence, ...]:
     """The outermost `... for 200 ms` in the expression."""
     if isinstance(expression, e.Persistence):
         return (expression,)
-    return tuple(duration for part in e.children(expression) for duration in _durations(part))
+    return tuple(
+        duration for part in e.children(expression) for duration in outermost_persistences(part)
+    )
 
 
 def _at(steps: StepFunction, times: Times) -> States:

@@ -1,0 +1,1 @@
+"""Truth values of propositions over the few samples that a stream keeps."""
