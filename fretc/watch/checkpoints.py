@@ -34,9 +34,10 @@ class Checkpoints:
         return self._times[0] if self._times else None
 
     def latest(self, arrival: int) -> int | None:
-        """A time that was the latest one at this arrival or shortly before it.
+        """A time that was the latest one at this arrival or before it.
 
-        It is never later than the true one. None: no message had arrived.
+        It is never later than the true one, and no earlier than that of any message which arrived a
+        tenth of a second before the last one until then. None: no message had arrived.
         """
         place = bisect_right(self._arrivals, arrival)
         return self._times[place - 1] if place else None
