@@ -92,7 +92,6 @@ DOORS = {
     },
     "mcap": {
         "fretc/audit/outputs/annotations.py",
-        "fretc/logs/mcap/chunks.py",
         "fretc/logs/mcap/container.py",
         "fretc/logs/mcap/index.py",
         "fretc/logs/mcap/metadata.py",

@@ -32,8 +32,6 @@ _STATM = Path("/proc/self/statm")
 """Where Linux states the memory of this process, in pages."""
 _PERIOD = 0.05
 """Seconds between two checks of a thread."""
-HAS_THREADS = sys.platform != "emscripten"
-"""Whether a second thread can be started."""
 
 
 if sys.platform == "win32":

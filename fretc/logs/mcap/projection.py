@@ -1,37 +1,65 @@
 """The messages of some topics of a log, by its index: nothing else is unpacked.
 
-Each message is compared with its entry in the index, and the records of a chunk without CRC must
-follow each other as the index says. A contradiction is a `BrokenError`: then each record must be
-read.
+A chunk is unpacked up to its last wanted message, where that saves much; otherwise it is unpacked
+whole, and its CRC is checked. Each message is compared with its entry in the index, and the records
+of a chunk without CRC must follow each other as the index says. A contradiction is a `BrokenError`:
+then each record must be read.
 
 Source: MCAP specification, Message Index (op=0x07), Chunk Index (op=0x08).
 """
 
 from __future__ import annotations
 
+import struct
 from collections import Counter, defaultdict
-from collections.abc import Sequence
-from contextlib import closing
+from collections.abc import Container
 from dataclasses import field
 from io import BufferedReader
 
 import numpy as np
 from mcap.opcode import Opcode
+from mcap.records import ChunkIndex
+from numpy.typing import NDArray
 
 from fretc.logs.mcap.arena import SIZE, ChunkBytes
-from fretc.logs.mcap.chunks import ChunkInMemory, ChunkReader, Entries, numbers
-from fretc.logs.mcap.container import ENTRY, HEAD, BrokenError, ChannelDefinition
+from fretc.logs.mcap.container import (
+    ENTRY,
+    HEAD,
+    INDEX,
+    BrokenError,
+    ChannelDefinition,
+    crc32,
+    is_absurd,
+)
 from fretc.logs.mcap.damage import LATEST
 from fretc.logs.mcap.index import Index, is_known
 from fretc.logs.mcap.messages import FileTimes, Messages, Sink, record_heads
-from fretc.logs.mcap.payloads import Bytes
-from fretc.logs.mcap.read_ahead import in_turn
+from fretc.logs.mcap.payloads import Places
 from fretc.logs.signals.integrity import Checked
 from fretish.classes.frozen import dataclass
-from fretish.system.resources import HAS_THREADS
 
-_MUCH = 2 * SIZE
-"""Unpacked bytes of a log from which on a second thread is worth its start."""
+_SLACK = 4096
+"""The expected bytes of the last message of a chunk, until a longer message comes."""
+_FEW = 32
+"""The number of comparisons up to which Python is faster than NumPy."""
+_BLOCK = 2**17
+"""Bytes that a codec unpacks at once."""
+
+
+_HEAD = struct.Struct("<BQQQQII")
+"""The record of a chunk up to the name of its compression: `HEAD` and `CHUNK`."""
+_PLACE = struct.Struct("<8xQ")
+"""The format of the position in an entry of a message index, after its time."""
+_INDEX_RECORD = struct.Struct("<BQHI")
+"""The record of a message index up to its entries: `HEAD` and `INDEX`."""
+
+_NOWHERE: Places = np.zeros(0, np.int64)
+Entries = NDArray[np.uint64]
+"""The entries of a message index: time, position, time, position, ..."""
+
+
+def _numbers(entries: bytes) -> Entries:
+    return np.frombuffer(entries, "<u8")
 
 
 @dataclass(slots=True)
@@ -51,6 +79,10 @@ class Projection:
         self._stream, self._index, self._sink = stream, index, sink
         streams = index.streams
         self._wanted = {id for id, each in streams.items() if sink.wants(each.channel.topic)}
+        self._arena = ChunkBytes(sum(chunk.uncompressed_size for chunk in index.chunks))
+        self._packed = bytearray()
+        self._longest: Counter[int] = Counter(dict.fromkeys(self._wanted, _SLACK))
+        self._batches: defaultdict[int, _Batch] = defaultdict(_Batch)
         self._counts: Counter[int] = Counter()
         self._crc_checked = self._without_crc = 0
         self.crcs: dict[int, int] = {}
@@ -83,12 +115,12 @@ class Projection:
         """
         for stream in self._index.streams.values():
             self._sink.declare(stream)
-        chunks = ChunkReader(self._stream, self._index.chunks, self._wanted)
-        with closing(in_turn(chunks.fill, self._arenas())) as filled:
-            for arena, some in filled:
-                for chunk in some:
-                    self._check(chunk, arena.data)
-                self._hand_on(some, arena.data)
+        for chunk in self._index.chunks:
+            if not self._wanted.isdisjoint(chunk.message_index_offsets):
+                self._chunk(chunk)
+                if self._arena.used >= SIZE:
+                    self._hand_on()
+        self._hand_on()
         counts = self._index.statistics.channel_message_counts
         for id, stream in self._index.streams.items():
             if id not in self._wanted:
@@ -98,33 +130,56 @@ class Projection:
                     "the number of messages of a topic differs from the stated number"
                 )
 
-    def _arenas(self) -> list[ChunkBytes]:
-        """Two arenas to fill in turn; one for a small log, or where two could get large."""
-        sizes = [chunk.uncompressed_size for chunk in self._index.chunks]
-        two = HAS_THREADS and sum(sizes) >= _MUCH and max(sizes) <= SIZE
-        return [ChunkBytes(sum(sizes)) for _ in range(1 + two)]
-
     # One chunk
 
-    def _check(self, chunk: ChunkInMemory, data: Bytes) -> None:
-        """Compare the records of a chunk with the index, as far as no CRC covers them."""
-        self.crcs[chunk.index.chunk_start_offset] = chunk.crc
-        self._crc_checked += chunk.crc_checked
-        self._without_crc += not chunk.crc
-        if chunk.crc:
-            new = {id: some for id, some, _ in chunk.entries if id not in self._met}
+    def _chunk(self, chunk: ChunkIndex) -> None:
+        entries = self._entries(chunk, self._wanted)
+        if not entries:
+            return
+        size = chunk.uncompressed_size
+        last, final = max((last, id) for id, _, last in entries)
+        needed, places = last + HEAD.size + self._longest[final], None
+        while True:
+            whole = needed > size // 2
+            needed = size if whole else needed
+            base, crc = self._unpack(chunk, needed, whole=whole)
+            if places is None:
+                places = _NOWHERE if crc else self._places(chunk)
+            end = self._end(final, base, last, needed)
+            if end <= needed and not crc:
+                wall = int(min(places[places > last], default=size))
+                end = end if end == wall else max(end, wall)
+            if end <= needed:
+                break
+            if end > size:
+                raise BrokenError("a message is cut off")
+            needed = end
+        if whole and crc:
+            if crc32(self._arena.data.data[base : base + needed]) != crc:
+                raise BrokenError("the CRC of a chunk does not match its data")
+            self._crc_checked += 1
+        self._without_crc += not crc
+        self.crcs[chunk.chunk_start_offset] = crc
+        if crc:
+            new = {id: some for id, some, _ in entries if id not in self._met}
             self._met.update(new)
-            firsts = (int(numbers(some)[1::2].min()) for some in new.values())
-            self._declared(data.data, chunk.base, chunk.size, max(firsts, default=0))
+            firsts = (int(_numbers(some)[1::2].min()) for some in new.values())
+            self._declared(base, needed, max(firsts, default=0))
         else:
-            self._tiled(chunk, data)
+            self._tiled(base, needed, size, places)
+        span = chunk.message_start_time, chunk.message_end_time
+        for id, some, _ in entries:
+            batch = self._batches[id]
+            batch.entries.append(some)
+            batch.limits.append((len(some) // ENTRY.itemsize, base, base + needed, *span))
+        self._arena.used = base + needed
 
-    def _declared(self, data: memoryview, base: int, size: int, until: int) -> None:
+    def _declared(self, base: int, needed: int, until: int) -> None:
         """Compare declarations of a chunk with the summary: at its beginning, and up to `until`.
 
         A log that was merged from others may give two topics the same number.
         """
-        at, end = base, base + size
+        data, at, end = self._arena.data.data, base, base + needed
         while at + HEAD.size <= end:
             opcode, length = HEAD.unpack_from(data, at)
             start, at = at + HEAD.size, at + HEAD.size + length
@@ -143,24 +198,35 @@ class Projection:
                 raise BrokenError("a chunk declares a topic or type that is not in the summary")
             self._verified.add((opcode, content))
 
-    def _tiled(self, chunk: ChunkInMemory, data: Bytes) -> None:
+    def _places(self, chunk: ChunkIndex) -> Places:
+        """The offsets of the messages of a chunk by its index, in the order of the file."""
+        entries = self._entries(chunk, chunk.message_index_offsets.keys())
+        return np.sort(_numbers(b"".join([some for _, some, _ in entries]))[1::2].astype(np.int64))
+
+    def _tiled(self, base: int, needed: int, size: int, places: Places) -> None:
         """Compare the unpacked records of a chunk without a CRC with its index.
 
         Each message begins at the end of the one before, except for definitions between them.
+
+        Args:
+            base: the offset of the chunk in the arena.
+            needed: the number of its bytes in the arena.
+            size: the size of the chunk.
+            places: the offsets of its messages.
         """
-        base, needed, places = chunk.base, chunk.size, chunk.places
-        size = chunk.index.uncompressed_size
         there = places[places + HEAD.size <= needed]
+        data = self._arena.data
         lengths = np.ndarray((len(data) - 8,), "<u8", data.data, 1, (1,))[there + base]
         if (data[there + base] != Opcode.MESSAGE).any() or (lengths > size).any():
             raise BrokenError("the index of a chunk points to a record that is not a message")
         ends = np.append(0, there + HEAD.size + lengths.astype(np.int64))
         walls = np.append(places, size)[: len(ends)]
         for row in np.flatnonzero((ends != walls) & (walls <= needed)).tolist():
-            self._between(data.data, base + int(ends[row]), base + int(walls[row]))
+            self._between(base + int(ends[row]), base + int(walls[row]))
 
-    def _between(self, data: memoryview, at: int, wall: int) -> None:
+    def _between(self, at: int, wall: int) -> None:
         """Check that only definitions are between two messages in the arena."""
+        data = self._arena.data.data
         while at != wall:
             opcode, length = HEAD.unpack_from(data, at) if at + HEAD.size <= wall else (0, 0)
             start, at = at + HEAD.size, at + HEAD.size + length
@@ -168,22 +234,111 @@ class Projection:
                 raise BrokenError("the records of a chunk are not where its index points")
             self._as_declared(opcode, bytes(data[start:at]))
 
+    def _entries(self, chunk: ChunkIndex, ids: Container[int]) -> list[tuple[int, bytes, int]]:
+        """For each channel in the chunk: its number, its entries, and its last offset."""
+        begin = chunk.chunk_start_offset + chunk.chunk_length
+        self._stream.seek(begin)
+        data = self._stream.read(chunk.message_index_length)
+        entries = []
+        for id, offset in chunk.message_index_offsets.items():
+            if id not in ids:
+                continue
+            at = offset - begin
+            start = at + _INDEX_RECORD.size
+            if start > len(data):
+                raise BrokenError("a record is cut off")
+            opcode, length, channel, size = _INDEX_RECORD.unpack_from(data, at)
+            if (opcode, channel, size % ENTRY.itemsize) != (Opcode.MESSAGE_INDEX, id, 0):
+                raise BrokenError("the index of a chunk is missing")
+            if INDEX.size + size > length or start + size > len(data):
+                raise BrokenError("a record is cut off")
+            if size:
+                some = data[start : start + size]
+                few = size < _FEW * ENTRY.itemsize
+                last = max(_PLACE.iter_unpack(some))[0] if few else int(_numbers(some)[1::2].max())
+                if last >= chunk.uncompressed_size:
+                    raise BrokenError("the index of a chunk points outside the chunk")
+                entries.append((id, some, last))
+        return entries
+
+    def _unpack(self, chunk: ChunkIndex, size: int, *, whole: bool) -> tuple[int, int]:
+        """Unpack the first `size` bytes of a chunk after those in use.
+
+        Returns:
+            Where in the arena they begin, and the CRC that the chunk states.
+        """
+        packed, used = chunk.compressed_size, self._arena.used
+        before = _HEAD.size + len(chunk.compression) + 8
+        if not chunk.compression:
+            if packed != chunk.uncompressed_size:
+                raise BrokenError("the size of a chunk differs from the size that it states")
+            return used + before, self._fill(chunk, self._arena.target(before + size))
+        if is_absurd(chunk.uncompressed_size, packed):
+            raise BrokenError("a chunk states an impossible size")
+        for length in (packed,) if whole else (_share(chunk, size), packed):
+            if before + length > len(self._packed):
+                self._packed = bytearray(before + length)
+            some = memoryview(self._packed)[: before + length]
+            crc = self._fill(chunk, some)
+            if self._arena.unpack(chunk.compression, some[before:], size, whole=whole):
+                return used, crc
+        raise BrokenError("the size of a chunk differs from the size that it states")
+
+    def _fill(self, chunk: ChunkIndex, target: memoryview) -> int:
+        """Read the beginning of a chunk, with its head, in one step; return the CRC that it states.
+
+        The other fields of its head must match its index.
+        """
+        self._stream.seek(chunk.chunk_start_offset)
+        if self._stream.readinto(target) != len(target):
+            raise BrokenError("a chunk is cut off")
+        *stated, crc, name = _HEAD.unpack_from(target)
+        compression = chunk.compression.encode()
+        tail = compression + chunk.compressed_size.to_bytes(8, "little")
+        before = _HEAD.size + len(tail)
+        if (
+            (*stated, name)
+            != (
+                Opcode.CHUNK,
+                chunk.chunk_length - HEAD.size,
+                chunk.message_start_time,
+                chunk.message_end_time,
+                chunk.uncompressed_size,
+                len(compression),
+            )
+            or target[_HEAD.size : before] != tail
+            or chunk.chunk_length < before + chunk.compressed_size
+        ):
+            raise BrokenError("a chunk does not match its index")
+        return int(crc)
+
+    def _end(self, id: int, base: int, last: int, needed: int) -> int:
+        """The end of the last message of a channel in its chunk, as far as it is unpacked."""
+        content = last + HEAD.size
+        if content > needed:
+            return content
+        _, length = HEAD.unpack_from(self._arena.data.data, base + last)
+        self._longest[id] = max(self._longest[id], min(length, SIZE))
+        return content + int(length)
+
     # Many chunks
 
-    def _hand_on(self, chunks: Sequence[ChunkInMemory], data: Bytes) -> None:
-        """Pass the messages in an arena to the sink, topic by topic."""
-        batches = _batches(chunks)
+    def _hand_on(self) -> None:
+        """Pass the messages in the arena to the sink, topic by topic."""
         topics: defaultdict[str, list[int]] = defaultdict(list)
-        for id in batches:
+        for id in self._batches:
             topics[self._index.streams[id].channel.topic].append(id)
         for ids in topics.values():
-            parts = [(self._index.streams[id], self._messages(id, batches[id], data)) for id in ids]
+            parts = [(self._index.streams[id], self._messages(id)) for id in ids]
             for stream, messages in parts if len(parts) == 1 else _by_turns(parts):
                 self._sink.add_all(stream, messages)
+        self._batches.clear()
+        self._arena.clear()
 
-    def _messages(self, id: int, batch: _Batch, data: Bytes) -> Messages:
+    def _messages(self, id: int) -> Messages:
         """The messages of one channel, in the order of the file."""
-        entries = numbers(b"".join(batch.entries))
+        batch = self._batches[id]
+        entries = _numbers(b"".join(batch.entries))
         counts, *of_chunks = np.array(batch.limits, np.uint64).T
         bases, limits = (np.repeat(of_chunk, counts.astype(np.int64)) for of_chunk in of_chunks[:2])
         times, places = entries[::2], (entries[1::2] + bases).astype(np.int64)
@@ -192,6 +347,7 @@ class Projection:
         if (places[1:] < places[:-1]).any():  # some writers sort the index by time
             order = np.argsort(places)
             places, times, limits = places[order], times[order], limits[order]
+        data = self._arena.data
         heads = record_heads(data, places)
         lengths, contents = heads["length"].astype(np.uint64), places + HEAD.size
         if (
@@ -207,18 +363,6 @@ class Projection:
             raise BrokenError("the index of a chunk does not match its messages")
         self._counts[id] += len(messages)
         return messages
-
-
-def _batches(chunks: Sequence[ChunkInMemory]) -> dict[int, _Batch]:
-    """The messages of each channel."""
-    batches: defaultdict[int, _Batch] = defaultdict(_Batch)
-    for chunk in chunks:
-        span = chunk.index.message_start_time, chunk.index.message_end_time
-        for id, entries, _ in chunk.entries:
-            count = len(entries) // ENTRY.itemsize
-            batches[id].entries.append(entries)
-            batches[id].limits.append((count, chunk.base, chunk.base + chunk.size, *span))
-    return batches
 
 
 def _in_time(times: FileTimes, counts: Entries, first: Entries, last: Entries) -> bool:
@@ -237,6 +381,13 @@ def _in_time(times: FileTimes, counts: Entries, first: Entries, last: Entries) -
         and (latest <= last).all()
         and (latest < LATEST).all()
     )
+
+
+def _share(chunk: ChunkIndex, size: int) -> int:
+    """An estimate of the packed bytes of a chunk that its first `size` bytes need at most."""
+    blocks = -(-size // _BLOCK) * _BLOCK
+    likely = int(blocks * chunk.compressed_size / chunk.uncompressed_size * 1.3) + 2**14
+    return min(likely, chunk.compressed_size)
 
 
 def _by_turns(
