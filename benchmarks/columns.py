@@ -9,8 +9,8 @@ Where the log has images, their heights are read too, and then the floor reads a
 `python -m benchmarks.logs` writes such logs.
 
 Medians of seven rounds, in each of which all are run in turn, as multiples of the floor: CPU time
-of all threads, that of the first thread, and the wall clock. The limits are for the wall clock,
-which tells something on two idle cores only: a second thread reads and unpacks, a third one hashes.
+of all threads, that of the first thread, and the wall clock. The limits are for the wall clock on
+two idle cores: a second thread hashes.
 Memory is the peak above the interpreter with everything imported, in a process of its own.
 `--check` fails where a limit is exceeded.
 """
