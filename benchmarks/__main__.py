@@ -14,6 +14,7 @@ from importlib import import_module
 NAMES = (
     "startup",
     "small_logs",
+    "watching",
     "tables",
     "monitoring",
     "compiled_monitors",

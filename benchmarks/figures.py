@@ -27,4 +27,4 @@ class Figure:
     def __str__(self) -> str:
         sign = "≥" if self.at_least else "≤"
         mark = "" if self.is_met else "  missed"
-        return f"{self.what:46} {self.value:9.3g} {sign} {self.limit:<7g} {self.unit}{mark}"
+        return f"{self.what:46} {self.value:9.4g} {sign} {self.limit:<7g} {self.unit}{mark}"

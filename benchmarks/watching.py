@@ -8,6 +8,7 @@ Prints CPU time; no test asserts it.
 from __future__ import annotations
 
 import shutil
+import statistics
 import sys
 import time
 from collections.abc import Iterator
@@ -15,6 +16,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from benchmarks.figures import RUNS, Figure
 from compiler.targets.python import monitor
 from fretc.api.requirements import read_project
 from fretc.audit.one_log import audit
@@ -28,6 +30,9 @@ from fretc.watch.watch import Watch
 from monitors.loading import executed
 
 ROOT = Path(__file__).parent.parent
+LOG = str(ROOT / "traces" / "mission-seed15.mcap")
+LIMITS = {"requirements": 20_000, "requirements/mission": 5_000}
+"""The least messages a second."""
 CALLS = 20_000
 """Calls of `statuses` that are timed."""
 
@@ -79,17 +84,31 @@ def pending(folder: Path) -> float:
     return (time.process_time() - start) / CALLS * 1e9
 
 
+def arrivals_of(plan: Plan, log: str) -> list[Arrival]:
+    items = Log(log, follow=False).arrivals(Watch(plan).topics)
+    return [each for each in items if isinstance(each, Arrival)]
+
+
+def figures(log: str = LOG) -> Iterator[Figure]:
+    for name, limit in LIMITS.items():
+        with requirements(ROOT / name, 'time = "log_time"') as folder:
+            plan = planned(read_project(folder))
+            assert isinstance(plan, Plan), plan
+            arrivals = arrivals_of(plan, log)
+            rates = [len(arrivals) / taken(plan, arrivals)[1] for _ in range(RUNS)]
+        value = statistics.median(rates)
+        yield Figure(f"watch of {name}", value, "messages a second", limit, at_least=True)
+
+
 def main() -> None:
-    log = sys.argv[1] if len(sys.argv) > 1 else str(ROOT / "traces" / "mission-seed15.mcap")
+    log = sys.argv[1] if len(sys.argv) > 1 else LOG
     print(f"{'':40}{'messages':>9}{'audit':>12}{'session':>12}{'watch':>12}{'pending':>10}")
     for name in ("requirements", "requirements/mission"):
         for clock in ('time = "log_time"', 'time = "header.stamp"\nlateness = "200 ms"'):
             with requirements(ROOT / name, clock) as folder:
                 plan = planned(read_project(folder))
                 assert isinstance(plan, Plan), plan
-                topics = Watch(plan).topics
-                found = Log(log, follow=False).arrivals(topics)
-                arrivals = [each for each in found if isinstance(each, Arrival)]
+                arrivals = arrivals_of(plan, log)
                 seconds = audited(plan, log), *taken(plan, arrivals)
                 rates = "".join(f"{len(arrivals) / each:>10.0f}/s" for each in seconds)
                 title = f"{name}, {clock.split()[2]}"
