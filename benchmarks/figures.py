@@ -27,4 +27,5 @@ class Figure:
     def __str__(self) -> str:
         sign = "≥" if self.at_least else "≤"
         mark = "" if self.is_met else "  missed"
-        return f"{self.what:46} {self.value:9.4g} {sign} {self.limit:<7g} {self.unit}{mark}"
+        value = f"{self.value:,.0f}" if self.value >= 1000 else f"{self.value:.2f}"
+        return f"{self.what:46} {value:>9} {sign} {self.limit:<7,g} {self.unit}{mark}"
