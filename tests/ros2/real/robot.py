@@ -155,13 +155,17 @@ class Robot:
         assert client.wait_for_service(PATIENCE), name
         request = ChangeState.Request()
         request.transition.id = getattr(Transition, f"TRANSITION_{transition.upper()}")
-        answered = threading.Event()
-        future = client.call_async(request)
-        future.add_done_callback(lambda _: answered.set())
-        if waits:
-            assert answered.wait(PATIENCE), transition
-            self.node.destroy_client(client)
-        return waits and future.result().success
+        for attempt in range(4):
+            answered = threading.Event()
+            future = client.call_async(request)
+            future.add_done_callback(lambda _, answered=answered: answered.set())
+            if not waits:
+                return False
+            if answered.wait(PATIENCE / 4):
+                self.node.destroy_client(client)
+                # A node that has not met the client yet does what is asked, and its answer is lost.
+                return attempt > 0 or future.result().success
+        raise AssertionError(f"no answer: {transition}")
 
     def obey(self, word: str, *more: str) -> bool:
         """Do what is asked; False: it was refused."""
