@@ -24,7 +24,7 @@ from fretc.logs.messages.type_descriptions import (
     type_hash,
 )
 from fretc.watch.sources.dds_domain import DdsWriter, Domain, Reader
-from fretc.watch.sources.dds_types import Offer
+from fretc.watch.sources.dds_types import Offer, UnreadableTypeError
 from fretish.classes.frozen import dataclass
 
 PATIENCE = 3 * 10**9
@@ -33,6 +33,8 @@ MOST_QUESTIONS = 100
 """The most types that are asked for; the definitions of further ones stay unknown."""
 _MOST_SERVICES = 50
 """The most nodes of a process that are asked."""
+_MOST_PARTICIPANTS = 1000
+"""The most processes whose services are kept."""
 _LONGEST = 2**20
 """Bytes of an answer; longer ones are ignored."""
 _FAST_DDS = "010f"
@@ -96,9 +98,8 @@ class TypeService:
         """The offers whose questions have ended since the last call, answered or not."""
         for participant, topic in self._domain.readers_of_others():
             match = _REQUESTS.fullmatch(topic)
-            services = self._services.setdefault(participant, []) if match else []
-            if match and match[1] not in services and len(services) < _MOST_SERVICES:
-                services.append(match[1])
+            if match is not None:
+                self._note(participant, match[1])
         for offer, question in [*self._questions.items()]:
             text = self._answer(question)
             if text is None and self._now() - question.since < PATIENCE:
@@ -109,11 +110,23 @@ class TypeService:
                 client.close()
             yield offer
 
+    def _note(self, participant: str, service: str) -> None:
+        if participant not in self._services and len(self._services) >= _MOST_PARTICIPANTS:
+            del self._services[next(iter(self._services))]
+        services = self._services.setdefault(participant, [])
+        if service not in services and len(services) < _MOST_SERVICES:
+            services.append(service)
+
     def _answer(self, question: _Question) -> str | None:
-        for service in self._services.get(question.participant, ()):
-            if service not in question.clients:
-                question.clients[service] = _Client(self._domain, service, question.offer)
-            text = question.clients[service].answer()
+        services = self._services.get(question.participant, [])
+        for service in [*services]:
+            try:
+                if service not in question.clients:
+                    question.clients[service] = _Client(self._domain, service, question.offer)
+                text = question.clients[service].answer()
+            except UnreadableTypeError:  # its name is no topic, or it takes no request
+                services.remove(service)
+                continue
             if text is not None:
                 return text
         return None

@@ -16,9 +16,9 @@ from fretc.logs.messages.ros2_types import definitions
 from fretc.logs.messages.type_descriptions import DescribedField, DescribedType, type_hash
 from fretc.watch.sources import dds, type_service
 from fretc.watch.sources.dds import Dds
-from fretc.watch.sources.dds_types import Offer
+from fretc.watch.sources.dds_types import Offer, UnreadableTypeError
 from fretc.watch.sources.source import Arrival, Idle, Problem
-from fretc.watch.sources.type_service import described
+from fretc.watch.sources.type_service import TypeService, described
 from fretish.diagnostics.diagnostic import Code
 from tests.effort import FULL
 from tests.fretc.logs.messages.test_type_descriptions import described as description_of
@@ -119,6 +119,38 @@ def test_the_hash_is_the_one_that_the_installed_messages_carry() -> None:
         )
         hashes = {each["type_name"]: each["hash_string"] for each in document["type_hashes"]}
         assert type_hash(main, parts) == hashes[main.name], main.name
+
+
+class Refusing:
+    """A domain with a service whose topics cannot be opened, and many processes."""
+
+    def __init__(self, participants: int) -> None:
+        topics = ("rq/evil/get_type_descriptionRequest", "rt/scan")
+        self.others = [(f"010f{n:08}", topic) for n in range(participants) for topic in topics]
+        self.asked = 0
+
+    def readers_of_others(self) -> list[tuple[str, str]]:
+        others, self.others = self.others, []
+        return others
+
+    def reader(self, *_: object) -> None:
+        self.asked += 1
+        raise UnreadableTypeError("no topic")
+
+
+def test_a_service_that_cannot_be_asked_is_asked_once_and_ends_nothing() -> None:
+    domain, time = Refusing(2_000), [0]
+    service = TypeService(domain, lambda: time[0])  # type: ignore[arg-type]
+    offer = offer_of(SCAN)
+    assert service.asks("010f00001999", offer)
+    for _ in range(3):
+        assert [*service.answers()] == []
+    assert domain.asked == 1
+    assert len(service._services) <= 1_000
+    time[0] = type_service.PATIENCE
+    assert [*service.answers()] == [offer]
+    assert service.definition(offer) is None
+    assert not service.asks("010f00001999", offer)
 
 
 # A robot ----------------------------------------------------------------------------------------
