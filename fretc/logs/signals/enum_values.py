@@ -95,7 +95,8 @@ def enum_indices(signal: Signal, numbers: Values) -> tuple[Numbers, NDArray[np.b
         signal: a signal with `numbers`.
         numbers: the values of the field, shape (n,).
     """
-    double = numbers.astype(np.float64)
+    with np.errstate(invalid="ignore"):  # a signaling NaN is a NaN, as for the official decoder
+        double = numbers.astype(np.float64)
     enum_numbers = np.array(signal.numbers, np.float64)
     order = np.argsort(enum_numbers)
     nearest = order[np.searchsorted(enum_numbers[order], double).clip(max=len(enum_numbers) - 1)]

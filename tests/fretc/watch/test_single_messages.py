@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import struct
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -9,7 +10,7 @@ from math import isnan
 from unittest.mock import patch
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from fretc.logs import extraction
@@ -197,6 +198,12 @@ def test_scans_have_the_values_of_the_official_decoder(
         min_size=2,
         max_size=10,
     )
+)
+@example(
+    [
+        (b"abc", 1.0, 0, 0, 0, (7.25, 7.25, 7.25), None),
+        (b"abc", math.inf, 0, 0, 0, (7.25, 7.25, 7.25), ("flip", 192, 1)),  # a NaN that signals
+    ]
 )
 @examples(40)
 def test_numbers_have_the_values_of_the_official_decoder(
