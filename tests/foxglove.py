@@ -9,7 +9,7 @@ import json
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager, suppress
 from dataclasses import dataclass
 from ssl import SSLContext
 from threading import Thread
@@ -21,9 +21,8 @@ from websockets.typing import Subprotocol
 
 from fretc.watch.sources.foxglove import Foxglove
 from fretc.watch.sources.foxglove_protocol import address
-from fretc.watch.sources.source import Arrival, Event, Idle, Problem
-from fretish.diagnostics.diagnostic import Code, Diagnostic
-from tests.ros1 import until
+from fretish.diagnostics.diagnostic import Diagnostic
+from tests.source_listener import SourceListener, closed
 
 _SERVER = '''
 """Serves what standard input says: an object of JSON a line. It prints each line that is done."""
@@ -150,42 +149,14 @@ def hostile(
         thread.join(5)
 
 
-class Listened:
+class Listened(SourceListener):
     """A source, and what it has given."""
 
     def __init__(self, url: str, *topics: str) -> None:
         parts = address(url)
         assert not isinstance(parts, Diagnostic), parts
-        self.source = Foxglove(parts)
-        self.items: list[Arrival | Event] = []
-        self.thread = Thread(target=self._listen, args=(topics or ("/x",),), daemon=True)
-        self.thread.start()
-
-    def _listen(self, topics: tuple[str, ...]) -> None:
-        for item in self.source.arrivals(topics):
-            if not isinstance(item, Idle):
-                self.items.append(item)
-
-    def of(self, kind: type) -> list[Any]:
-        return [item for item in tuple(self.items) if isinstance(item, kind)]
-
-    @property
-    def codes(self) -> list[Code]:
-        return [item.diagnostic.code for item in self.of(Problem)]
-
-    def wait(self, what: str, holds: Callable[[], object]) -> None:
-        try:
-            until(what, holds, 20)
-        except AssertionError as error:
-            raise AssertionError(f"{error}: {self.items[-3:]}") from None
+        super().__init__(Foxglove(parts), *topics)
 
 
-@contextmanager
-def listened(url: str, *topics: str) -> Iterator[Listened]:
-    found = Listened(url, *topics)
-    try:
-        yield found
-    finally:
-        found.source.close()
-        found.thread.join(10)
-        assert not found.thread.is_alive()
+def listened(url: str, *topics: str) -> AbstractContextManager[Listened]:
+    return closed(Listened(url, *topics))

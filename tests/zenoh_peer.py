@@ -13,17 +13,14 @@ import socket
 import subprocess
 import sys
 from base64 import b64encode
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
-from threading import Thread
 from typing import Any
 
 from fretc.logs.messages.ros2_types import definitions
-from fretc.watch.sources.source import Arrival, Event, Idle, Problem
 from fretc.watch.zenoh.zenoh import Zenoh
-from fretish.diagnostics.diagnostic import Code
-from tests.ros1 import until
+from tests.source_listener import SourceListener, closed
 
 STRING = "std_msgs::msg::dds_::String_"
 NO_HASH = "TypeHashNotSupported"
@@ -207,45 +204,13 @@ def peer(port: int | None = None) -> Iterator[Peer]:
         process.communicate()
 
 
-class Listened:
+class Listened(SourceListener):
     """A source, and what it has given."""
 
     def __init__(self, locator: str, *topics: str) -> None:
         os.environ.pop("ROS_DOMAIN_ID", None)
-        self.source = Zenoh(locator)
-        self.items: list[Arrival | Event] = []
-        self.thread = Thread(target=self._listen, args=(topics or ("/x",),), daemon=True)
-        self.thread.start()
-
-    def _listen(self, topics: tuple[str, ...]) -> None:
-        for item in self.source.arrivals(topics):
-            if not isinstance(item, Idle):
-                self.items.append(item)
-
-    def of(self, kind: type) -> list[Any]:
-        return [item for item in tuple(self.items) if isinstance(item, kind)]
-
-    @property
-    def payloads(self) -> list[bytes]:
-        return [item.payload for item in self.of(Arrival)]
-
-    @property
-    def codes(self) -> list[Code]:
-        return [item.diagnostic.code for item in self.of(Problem)]
-
-    def wait(self, what: str, holds: Callable[[], object]) -> None:
-        try:
-            until(what, holds, 20)
-        except AssertionError as error:
-            raise AssertionError(f"{error}: {self.items[-3:]}") from None
+        super().__init__(Zenoh(locator), *topics)
 
 
-@contextmanager
-def listened(locator: str, *topics: str) -> Iterator[Listened]:
-    found = Listened(locator, *topics)
-    try:
-        yield found
-    finally:
-        found.source.close()
-        found.thread.join(10)
-        assert not found.thread.is_alive()
+def listened(locator: str, *topics: str) -> AbstractContextManager[Listened]:
+    return closed(Listened(locator, *topics))

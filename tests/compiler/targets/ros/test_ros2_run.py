@@ -28,7 +28,7 @@ from tests.fretc.watch.watched import Watched
 from tests.programs import needs_package
 from tests.ros1 import until
 from tests.ros2.emitted import write
-from tests.ros2.real.network import NODE, PATIENCE, Network, Program, network, shared
+from tests.ros2.real.network import NODE, PATIENCE, Network, Program, Robot, network, shared
 
 ROOT = Path(__file__).parents[4]
 NEAR, WALL = 0.05, 0.01
@@ -82,6 +82,17 @@ def triggers(lines: Sequence[dict[str, Any]], id: str) -> set[int]:
     return {line["triggered_ns"] for line in lines if line.get("requirement") == id} - {None}
 
 
+def breaks_edge(robot: Robot) -> None:
+    """Its brakes fail until EDGE is violated; then it stands, and is put far from the wall."""
+    robot.ask("away")
+    robot.drives()
+    robot.ask("stuck")
+    robot.until("EDGE is broken", lambda s: last(s["lines"], "EDGE")["verdict"] == "violated")
+    robot.ask("free")
+    robot.stands()
+    robot.ask("away")
+
+
 @needs_package("cyclonedds")
 def test_node_watch_and_audit_say_one_thing(here: Network, tmp_path: Path, fretc: Fretc) -> None:
     by_stamps(tmp_path / "r1")
@@ -104,13 +115,7 @@ def test_node_watch_and_audit_say_one_thing(here: Network, tmp_path: Path, fretc
         assert {*state["stops"]} == {True}
         assert state["wheels"][-1] == 0
 
-        robot.ask("away")
-        robot.drives()
-        robot.ask("stuck")
-        robot.until("EDGE is broken", lambda s: last(s["lines"], "EDGE")["verdict"] == "violated")
-        robot.ask("free")
-        robot.stands()
-        robot.ask("away")
+        breaks_edge(robot)
         robot.drives()
         robot.ask("rests")
         lines = robot.until(
@@ -164,13 +169,7 @@ def test_by_a_simulated_clock_node_and_audit_say_one_thing(
         robot.ask("away")
         robot.drives()
         robot.stands()
-    robot.ask("away")
-    robot.drives()
-    robot.ask("stuck")
-    robot.until("EDGE is broken", lambda s: last(s["lines"], "EDGE")["verdict"] == "violated")
-    robot.ask("free")
-    robot.stands()
-    robot.ask("away")
+    breaks_edge(robot)
     robot.ask("rests")
     sent = robot.ask("log")["log"]
     end = sent[-1][2]

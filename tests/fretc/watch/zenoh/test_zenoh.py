@@ -310,7 +310,7 @@ def test_a_closed_watch_ends_although_the_peer_does_not_answer() -> None:
         robot.process.send_signal(signal.SIGCONT)
 
 
-# Strangers
+# Other servers
 
 
 def test_strange_keys_and_tokens_are_ignored() -> None:
