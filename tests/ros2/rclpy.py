@@ -97,6 +97,13 @@ class Time:
         return message_class("builtin_interfaces/Time")(sec=sec, nanosec=nanosec)
 
 
+class Duration:
+    """rclpy.duration.Duration."""
+
+    def __init__(self, *, seconds: float) -> None:
+        self.seconds = seconds
+
+
 class Clock:
     """rclpy.clock.Clock: with `use_sim_time` that of ROS time is 0 before the first /clock."""
 
@@ -142,13 +149,23 @@ class Publisher:
     def __init__(self, node: Node, kind: type, topic: str, qos: QoSProfile) -> None:
         self.node, self.kind, self.topic, self.qos = node, kind, topic, qos
         self.kept: deque[Any] = deque(maxlen=qos.depth)
+        self.acknowledged = True
 
     def publish(self, message: Any) -> None:
         """Send a message of the publisher's type; another one is a TypeError."""
         if not isinstance(message, self.kind):
             raise TypeError(f"expected {self.kind.__name__}, got {type(message).__name__}")
         assert self.node.process.is_running, "nothing is published after rclpy.shutdown()"
+        self.acknowledged = False
         self.node.process.world.send(self, message)
+
+    def wait_for_all_acked(self, timeout: Duration) -> bool:
+        """Whether all subscribers have what was sent within that time; RCLError: nobody knows."""
+        assert timeout.seconds > 0, "for ever, or no time at all"
+        if not self.node.process.world.acknowledges:
+            raise RuntimeError("the middleware does not support it")
+        self.acknowledged = True
+        return True
 
 
 class LifecyclePublisher(Publisher):
@@ -308,6 +325,10 @@ class Node:
         return True
 
     def destroy_publisher(self, publisher: Publisher) -> bool:
+        """It sends nothing again: what nobody has acknowledged may be lost."""
+        kept = publisher.qos.durability is Durability.TRANSIENT_LOCAL
+        if kept and self.process.world.acknowledges:
+            assert publisher.acknowledged, f"the last message on {publisher.topic} may be lost"
         self.publishers.remove(publisher)
         return True
 

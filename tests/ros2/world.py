@@ -136,6 +136,8 @@ class World:
     def __init__(self, start: int = SYSTEM_START) -> None:
         """Nothing is there yet; the system time at the start is given."""
         self.steady, self._start = 0, start
+        self.acknowledges = True
+        """Whether the middleware knows what subscribers have got (Zenoh and some others do not)."""
         self.processes: list[Process] = []
         self.sent: dict[str, list[tuple[int, Any]]] = defaultdict(list)
         """Of each topic all messages, each with the steady time of its publication."""
@@ -249,6 +251,7 @@ def _modules(process: Process) -> dict[str, ModuleType]:
             "Clock": steady,
             "ClockType": rclpy.ClockType,
         },
+        "rclpy.duration": {"Duration": rclpy.Duration},
         "rclpy.exceptions": {
             "InvalidParameterValueException": rclpy.InvalidParameterValueException
         },

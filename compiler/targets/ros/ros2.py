@@ -25,6 +25,7 @@ _NODE = {
     "rcl_interfaces.msg": "FloatingPointRange, ParameterDescriptor",
     "rclpy": "",
     "rclpy.clock": "Clock, ClockType",
+    "rclpy.duration": "Duration",
     "rclpy.executors": "ExternalShutdownException, SingleThreadedExecutor",
     "rclpy.lifecycle": "LifecycleNode, TransitionCallbackReturn",
     "rclpy.qos": "DurabilityPolicy, qos_profile_sensor_data, QoSProfile",

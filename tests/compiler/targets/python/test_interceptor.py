@@ -191,6 +191,10 @@ class Ros:
     """Whether a signal ends it."""
     handlers: list[Callable[[int, object], None]] = field(default_factory=list)
     join: Callable[[], None] = lambda: None
+    acknowledges: bool = True
+    """Whether the middleware of ROS 2 knows what subscribers have got."""
+    acknowledged: int = 0
+    """How many messages they have for certain."""
 
     def interrupt(self) -> None:
         """A signal comes; the thread that hears it waits for the one that this is called in."""
@@ -224,6 +228,13 @@ class Publisher:
     def publish(self, message: Twist) -> None:
         self.ros.says.append((self.topic, message.six()))
 
+    def wait_for_all_acked(self, timeout: float) -> bool:
+        assert timeout > 0
+        if not self.ros.acknowledges:
+            raise RuntimeError("unsupported")
+        self.ros.acknowledged = len(self.ros.says)
+        return True
+
 
 def ros2(ros: Ros) -> dict[str, Any]:
     def subscribe(kind: type, topic: str, call: Callable[[Any], None], qos: object) -> Any:
@@ -234,6 +245,10 @@ def ros2(ros: Ros) -> dict[str, Any]:
         ros.story(ros)
         if ros.signalled:
             ros.interrupt()
+
+    def shut_down() -> None:
+        assert not ros.acknowledges or ros.acknowledged == len(ros.says), "a message may be lost"
+        ros.closed.append("rclpy")
 
     node = SimpleNamespace(
         create_publisher=lambda kind, topic, depth: Publisher(ros, topic),
@@ -247,11 +262,12 @@ def ros2(ros: Ros) -> dict[str, Any]:
             create_node=lambda name: node,
             spin=spin,
             ok=lambda: not ros.closed,
-            shutdown=lambda: ros.closed.append("rclpy"),
+            shutdown=shut_down,
         ),
         "rclpy.clock": SimpleNamespace(
             Clock=lambda clock_type: clock_type, ClockType=SimpleNamespace(STEADY_TIME="steady")
         ),
+        "rclpy.duration": SimpleNamespace(Duration=lambda seconds: seconds),
         "rclpy.qos": SimpleNamespace(qos_profile_sensor_data="sensor"),
         "rclpy.signals": SimpleNamespace(SignalHandlerOptions=SimpleNamespace(NO=0)),
     }
@@ -380,9 +396,11 @@ def test_the_last_that_the_wheels_hear_is_zero_whatever_ends_the_node(
     assert ros.says[-2:] == [("/wheels", FAST), ("/wheels", STILL)]
     assert capsys.readouterr().err == "interceptor.py: ValueError: the middleware is gone\n"
 
-    ros = Ros()
-    assert run(NODE, ros, ros2(ros)) == 0
-    assert ros.says == [("/wheels", STILL)]
+    for acknowledges in (True, False):
+        ros = Ros(acknowledges=acknowledges)
+        assert run(NODE, ros, ros2(ros)) == 0
+        assert ros.says == [("/wheels", STILL)]
+        assert ros.closed == ["rclpy"]
 
     ros = Ros(signalled=False)
     assert run(NODE, ros, ros2(ros)) == 4

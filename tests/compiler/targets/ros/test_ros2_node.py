@@ -262,9 +262,12 @@ transitions = st.lists(
 
 @pytest.mark.slow
 @examples(10)
-@given(transitions)
-def test_only_an_active_node_lets_the_robot_go(package: Path, asked: list[str]) -> None:
+@given(transitions, st.booleans())
+def test_only_an_active_node_lets_the_robot_go(
+    package: Path, asked: list[str], acknowledges: bool
+) -> None:
     robot = Robot(package)
+    robot.world.acknowledges = acknowledges
     monitor = robot.monitor(activate=False)
     for each in ["configure", "activate", *asked]:
         before = len(robot.stops)
