@@ -21,6 +21,7 @@ from lark.visitors import Transformer_NonRecursive
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.checking import check_depth, check_names, check_response_kinds, check_value
+from fretish.clock import SYMBOLS, whole_duration
 from fretish.diagnostics.diagnostic import Code, Diagnostic, DiagnosticError
 from fretish.diagnostics.fixes import FixedText
 from fretish.diagnostics.messages import diagnostic
@@ -28,7 +29,7 @@ from fretish.diagnostics.source import Span
 from fretish.error_rules.operators import unknown_character
 from fretish.error_rules.unexpected import Lexeme, Unexpected
 from fretish.reading.grammars import Grammar
-from fretish.syntax_errors import bad_duration, bad_probability, explain
+from fretish.syntax_errors import bad_duration, bad_probability, bad_unit, explain
 from fretish.units import NAMES, number
 from fretish.units import split as split_quantity
 
@@ -398,13 +399,21 @@ class _TreeBuilder(Transformer_NonRecursive[Token, Any]):
         return s.Probability(op, bound, text)
 
     def duration(self, meta: Any, children: list[Token]) -> s.Duration:
-        *digits, unit = children
-        text = "".join(digits)
-        if not text.isdigit() or len(text) > 15:
-            digits_span = _span(children[0], digits[-1])
-            unit_name = f"{_UNITS[unit.type]}s"
-            raise _ParseError(bad_duration(digits_span, unit_name, _meta_span(meta)))
-        return s.Duration(int(text), _UNITS[unit.type], _meta_span(meta))
+        *sign, last = children
+        if last.type == "QUANTITY":
+            digits, symbol = split_quantity(last)
+            end = len(last)
+            if symbol not in SYMBOLS:
+                raise _ParseError(bad_unit(_span(last).part(end - len(symbol), end)))
+            unit = SYMBOLS[symbol]
+        else:
+            digits, unit = sign.pop(), _UNITS[last.type]
+        is_plain = not sign and "e" not in digits.lower()  # FRET reads 2e1 as 2
+        length = _number(digits) if is_plain else None
+        whole = None if length is None else whole_duration(length, unit, _meta_span(meta))
+        if whole is None or whole.amount >= 10**15:
+            raise _ParseError(bad_duration(digits, _meta_span(meta)))
+        return whole
 
     def value(self, meta: Any, children: list[e.Expression]) -> e.Expression:
         return children[0]
@@ -443,12 +452,7 @@ def _unexpected(error: UnexpectedToken, text: Span) -> Diagnostic:
     token: Token = error.token
     before = _previous_token(token, text)
     if token.type == "QUANTITY" and "NUMBER" in (error.accepts or error.expected):
-        in_duration = before is not None and before.type in ("WITHIN", "FOR", "AFTER")
-        return (
-            explain(_unit_error(token, text))
-            if in_duration
-            else bad_probability(_lexeme(token, text).span)
-        )
+        return bad_probability(_lexeme(token, text).span)
     return explain(
         Unexpected(
             _lexeme(token, text),
@@ -456,20 +460,6 @@ def _unexpected(error: UnexpectedToken, text: Span) -> Diagnostic:
             frozenset(error.accepts or error.expected),
             text,
         )
-    )
-
-
-def _unit_error(token: Token, text: Span) -> Unexpected:
-    """The error of a duration in an SI unit, `within 5 s`: FRETish requires `seconds`."""
-    digits, unit = split_quantity(str(token))
-    start, end = token.start_pos, token.end_pos
-    assert start is not None
-    assert end is not None
-    return Unexpected(
-        Lexeme("ID", text.part(end - len(unit), end)),
-        Lexeme("NUMBER", text.part(start, start + len(digits))),
-        frozenset(_UNITS),
-        text,
     )
 
 
