@@ -136,12 +136,8 @@ def _is_in(diagnostic: Diagnostic, path: str) -> bool:
 
 
 def _draft(log: str, project: Project, output: str, *, force: bool) -> None:
-    from fretc.audit.bindings.draft import (
-        draft,
-        durations,
-        missing_propositions,
-        missing_signals,
-    )
+    from fretc.audit.bindings.draft import draft
+    from fretc.audit.bindings.needs import durations, missing_propositions, missing_signals
     from fretc.logs.reader import look
 
     if output != "-" and not force and os.path.lexists(output):
