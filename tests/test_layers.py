@@ -23,7 +23,8 @@ compiler.situations  compiler.project  compiler.agents  compiler.program  compil
 compiler.targets  compiler.targets.python  compiler.targets.c  compiler.targets.rust
 compiler.targets.ros  compiler.targets.javascript  compiler.targets.automata  compiler.targets.ajpf
 compiler  compiler.explanation
-fretc.logs.signals  fretc.logs.mcap  fretc.logs.messages  fretc.logs.storage  fretc.logs.windows
+fretc.logs.signals  fretc.logs.mcap  fretc.logs.messages  fretc.logs.storage  fretc.logs.tables
+fretc.logs.windows
 fretc.logs
 fretc.audit.measurements  fretc.audit.phases  fretc.audit.evidence  fretc.audit.store  fretc.audit
 fretc.audit.selection  fretc.audit.outputs  fretc.audit.bindings
@@ -99,6 +100,7 @@ DOORS = {
         "fretc/logs/mcap/walk.py",
         "fretc/logs/messages/decoding.py",
         "fretc/logs/storage/bags.py",
+        "fretc/logs/tables/contents.py",
         "fretc/watch/decoding.py",
         "fretc/watch/recording.py",
         "fretc/watch/sources/log.py",

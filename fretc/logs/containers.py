@@ -1,8 +1,9 @@
-"""The container formats of logs, recognized by the first bytes of a file: MCAP and ROS bags."""
+"""The container formats of logs: MCAP and ROS bags by their first bytes, tables by their suffix."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping
+from pathlib import PurePath
 
 from fretc.logs import log_diagnostics
 from fretc.logs.mcap.container import MAGIC
@@ -16,6 +17,7 @@ from fretc.logs.storage.bags import NOWHERE
 from fretc.logs.storage.inputs import OpenLog
 from fretc.logs.storage.parts import FileContents
 from fretc.logs.storage.splits import unclosed_backup
+from fretc.logs.tables import contents as tables
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
@@ -60,6 +62,10 @@ def _read(
     for magic, read in CONTAINERS.items():
         if start.startswith(magic):
             return read(log, start, sink, integrity, span, wanted)
+    suffix = PurePath(span.source.name).suffix.lower()
+    if suffix in tables.SUFFIXES:
+        log.stream.seek(0)
+        return tables.read(log, sink, span, suffix)
     return log_diagnostics.not_a_log(start, span)
 
 

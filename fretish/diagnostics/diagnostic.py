@@ -137,6 +137,7 @@ class Code(Enum):
     FOREIGN_GRID = ("F433", "the log names a beginning of the ticks that does not match it")
     MISSED = ("F434", "the watch that recorded the log has missed messages")
     GROWN = ("F431", "a log grew while it was read")
+    TIME_OF_ROWS = ("F435", "the time of the rows of a table is not stated")
     LOG_OUT_OF_TIME = ("F440", "the audit of a log took longer than allowed")
     AUDIT_OUT_OF_TIME = (
         "F441",

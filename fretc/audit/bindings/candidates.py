@@ -160,7 +160,7 @@ def _assumed_unit(need: Need, signal: DraftedSignal, kind: FieldKind) -> str | N
 
 def _likeness(name: str, topic: str, field: str) -> Likeness | None:
     path = [*topic.split("/"), *re.split(r"[.\[\]:]+", field.removesuffix("[:]"))]
-    if path[-1] == "data":  # of std_msgs, where the topic is the name
+    if path[-1] in ("data", "value"):  # the topic is the name
         path.pop()
     parts = [_phrase(part) for part in path if part]
     wanted, last = _phrase(name), parts[-1] if parts else ()
