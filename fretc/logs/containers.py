@@ -1,4 +1,4 @@
-"""The container formats of logs: MCAP and ROS bags by their first bytes, tables by their suffix."""
+"""The container formats of logs: MCAP, bags and ULog by their first bytes, tables by suffix."""
 
 from __future__ import annotations
 
@@ -12,9 +12,10 @@ from fretc.logs.mcap.damage import Damage
 from fretc.logs.mcap.messages import Sink
 from fretc.logs.signals.integrity import Integrity
 from fretc.logs.signals.samples import Gap
-from fretc.logs.storage import bags
+from fretc.logs.storage import bags, ulog
 from fretc.logs.storage.bags import NOWHERE
 from fretc.logs.storage.inputs import OpenLog
+from fretc.logs.storage.log_names import TABLES
 from fretc.logs.storage.parts import FileContents
 from fretc.logs.storage.splits import unclosed_backup
 from fretc.logs.tables import contents as tables
@@ -63,7 +64,7 @@ def _read(
         if start.startswith(magic):
             return read(log, start, sink, integrity, span, wanted)
     suffix = PurePath(span.source.name).suffix.lower()
-    if suffix in tables.SUFFIXES:
+    if suffix in TABLES:
         log.stream.seek(0)
         return tables.read(log, sink, span, suffix)
     return log_diagnostics.not_a_log(start, span)
@@ -97,6 +98,17 @@ def _reindexed(file: str, span: Gap | None) -> Iterator[tuple[Damage, Gap | None
         yield Damage(NOWHERE, what, code=Code.REINDEXED), (span[1], span[1])
 
 
+def _ulog(
+    log: OpenLog,
+    start: bytes,
+    sink: Sink,
+    integrity: Integrity,
+    span: Span,
+    wanted: Collection[str],
+) -> FileContents | Diagnostic:
+    return ulog.read(log, sink, span)
+
+
 def _mcap(
     log: OpenLog,
     start: bytes,
@@ -125,4 +137,9 @@ Container = Callable[
     [OpenLog, bytes, Sink, Integrity, Span, Collection[str]], FileContents | Diagnostic
 ]
 """The reader of one container format; its last argument is the first bytes of the file."""
-CONTAINERS: Mapping[bytes, Container] = {MAGIC: _mcap, bags.BAG: _bag, bags.DB3: _bag}
+CONTAINERS: Mapping[bytes, Container] = {
+    MAGIC: _mcap,
+    bags.BAG: _bag,
+    bags.DB3: _bag,
+    ulog.MAGIC: _ulog,
+}

@@ -19,6 +19,7 @@ LOG_EXTRAS = {
     "bags": "bags (.bag, .db3) and messages defined in IDL",
     "protobuf": "messages in Protobuf",
     "remote": "URLs",
+    "ulog": "ULog",
 }
 """Extras for commands that read logs, and what needs them."""
 

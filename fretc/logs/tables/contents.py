@@ -9,7 +9,7 @@ from __future__ import annotations
 import dataclasses
 import io
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 
 from mcap.records import Channel
 
@@ -26,8 +26,8 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 
-SUFFIXES: Mapping[str, str] = {".csv": ",", ".tsv": "\t", ".jsonl": "", ".ndjson": ""}
-"""Suffixes of tables, each with the delimiter of its cells; empty: its lines are JSON."""
+_DELIMITERS = {".csv": ",", ".tsv": "\t"}
+"""The delimiter of the cells by the suffix; other tables have a JSON object on each line."""
 TOPIC = "/table"
 _LONG_NAMES = {"name", "signal", "variable", "key", "topic", "field", "series"}
 """Names of the column that names what a row of the long form measures."""
@@ -40,14 +40,14 @@ def read(log: OpenLog, sink: Sink, span: Span, suffix: str) -> FileContents | Di
         log: the file, at its beginning.
         sink: receives the messages.
         span: the file, as named on the command line.
-        suffix: one of `SUFFIXES`.
+        suffix: one of the suffixes of tables.
 
     Returns:
         Its contents; or why it cannot be read.
     """
     text = io.TextIOWrapper(log.stream, "utf-8-sig", "surrogateescape", newline="")
     try:
-        delimiter = SUFFIXES[suffix]
+        delimiter = _DELIMITERS.get(suffix)
         rows = _uncut(csv_rows(text, delimiter), log) if delimiter else json_rows(text)
         return _read(rows, log, sink, span)
     finally:
