@@ -6,15 +6,16 @@ number or text stands there as a comment. Times are nanoseconds.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import gcd
 
 from compiler.files.build_id import __version__
 from compiler.files.templating import render
-from fretc.audit.bindings.candidates import Need, candidates
+from fretc.audit.bindings.candidates import Candidate, Candidates, Likeness, Need, candidates
 from fretc.audit.bindings.draft_signals import (
     DraftedSignal,
     bindable_fields,
+    drafted_signals,
     period_of,
     round_number,
     rounded,
@@ -67,13 +68,49 @@ def draft(
         why=why,
         topics=topics,
         missing=missing,
-        fields=fields,
-        choices={name: each.others for name, each in fields.items() if not each.chosen},
         unread=[each for each in unread if each.name not in known],
         bound={signal.path for signal in chosen},
-        flags={signal.name for signal in [*chosen, *signals] if _is_flag(overview, signal)},
         example=_example(overview, [*chosen, *signals]),
+        **_of_fields(overview, fields, [*chosen, *signals]),
     )
+
+
+def addition(
+    overview: Overview, missing: Sequence[MissingProposition], unread: Sequence[MissingSignal]
+) -> str:
+    """The tables that existing bindings lack, as text to append to them.
+
+    Args:
+        overview: the summary of a log, with the texts of its fields.
+        missing: propositions that sentences use and no bindings define.
+        unread: signals that sentences compare and no bindings declare.
+    """
+    known = {signal.name: signal for signal in drafted_signals(overview)}
+    needs: list[Need] = [*unread, *missing]
+    fields = {each.need.name: each for each in candidates(overview, needs)}
+    for need in needs:
+        if need.name in known:
+            candidate = Candidate(known[need.name], Likeness.SAME_NAME, is_unit_assumed=False)
+            fields[need.name] = Candidates(need, candidate, ())
+    chosen = [each.chosen.signal for each in fields.values() if each.chosen]
+    return render(
+        "bindings/needs.toml.j2",
+        missing=missing,
+        unread=unread,
+        example=_example(overview, chosen),
+        **_of_fields(overview, fields, chosen),
+    )
+
+
+def _of_fields(
+    overview: Overview, fields: Mapping[str, Candidates], signals: Sequence[DraftedSignal]
+) -> dict[str, object]:
+    """What the templates of needs show of the candidates."""
+    return {
+        "fields": fields,
+        "choices": {name: each.others for name, each in fields.items() if not each.chosen},
+        "flags": {signal.name for signal in signals if _is_flag(overview, signal)},
+    }
 
 
 def _is_flag(overview: Overview, signal: DraftedSignal) -> bool:
