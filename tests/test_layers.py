@@ -77,6 +77,7 @@ DOORS = {
     "pyarrow": {
         "fretc/audit/outputs/table.py",
         "fretc/audit/store/earlier_store.py",
+        "fretc/logs/tables/arrow_rows.py",
     },
     "distributed": {"fretc/audit/dask_executor.py"},
     "dask": {"fretc/audit/dask_executor.py"},

@@ -1,4 +1,4 @@
-"""The container formats of logs: MCAP, bags and ULog by their first bytes, tables by suffix."""
+"""The container formats of logs: MCAP, bags, ULog, Arrow by first bytes, tables by suffix."""
 
 from __future__ import annotations
 
@@ -15,10 +15,11 @@ from fretc.logs.signals.samples import Gap
 from fretc.logs.storage import bags, ulog
 from fretc.logs.storage.bags import NOWHERE
 from fretc.logs.storage.inputs import OpenLog
-from fretc.logs.storage.log_names import TABLES
+from fretc.logs.storage.log_names import TEXT_TABLES
 from fretc.logs.storage.parts import FileContents
 from fretc.logs.storage.splits import unclosed_backup
 from fretc.logs.tables import contents as tables
+from fretc.logs.tables.arrow_rows import ARROW, PARQUET
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
@@ -64,7 +65,7 @@ def _read(
         if start.startswith(magic):
             return read(log, start, sink, integrity, span, wanted)
     suffix = PurePath(span.source.name).suffix.lower()
-    if suffix in TABLES:
+    if suffix in TEXT_TABLES:
         log.stream.seek(0)
         return tables.read(log, sink, span, suffix)
     return log_diagnostics.not_a_log(start, span)
@@ -109,6 +110,17 @@ def _ulog(
     return ulog.read(log, sink, span)
 
 
+def _arrow(
+    log: OpenLog,
+    start: bytes,
+    sink: Sink,
+    integrity: Integrity,
+    span: Span,
+    wanted: Collection[str],
+) -> FileContents | Diagnostic:
+    return tables.read_arrow(log, sink, span)
+
+
 def _mcap(
     log: OpenLog,
     start: bytes,
@@ -142,4 +154,6 @@ CONTAINERS: Mapping[bytes, Container] = {
     bags.BAG: _bag,
     bags.DB3: _bag,
     ulog.MAGIC: _ulog,
+    PARQUET: _arrow,
+    ARROW: _arrow,
 }

@@ -17,6 +17,7 @@ T = TypeVar("T")
 Command = Callable[..., Any]
 LOG_EXTRAS = {
     "bags": "bags (.bag, .db3) and messages defined in IDL",
+    "parquet": "Parquet and Arrow",
     "protobuf": "messages in Protobuf",
     "remote": "URLs",
     "ulog": "ULog",

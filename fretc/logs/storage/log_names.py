@@ -14,7 +14,8 @@ from urllib.parse import parse_qsl, urlencode, urlsplit, urlunsplit
 
 LOGS = (".mcap", ".bag", ".db3", ".ulg")
 """Suffixes of files that are nothing but logs."""
-TABLES = (".csv", ".tsv", ".jsonl", ".ndjson")
+TEXT_TABLES = (".csv", ".tsv", ".jsonl", ".ndjson")
+TABLES = (*TEXT_TABLES, ".parquet", ".feather", ".arrow")
 """Suffixes of tables, which may be logs."""
 STDIN = "-"
 _STDIN_NAME = "<stdin>"

@@ -9,7 +9,8 @@ from __future__ import annotations
 import dataclasses
 import io
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import chain
 
 from mcap.records import Channel
 
@@ -20,15 +21,19 @@ from fretc.logs.signals.samples import Gap
 from fretc.logs.storage.bags import NOWHERE
 from fretc.logs.storage.inputs import OpenLog
 from fretc.logs.storage.parts import FileContents
+from fretc.logs.tables.arrow_rows import arrow_rows
 from fretc.logs.tables.rows import Row, as_json, csv_rows, json_rows
 from fretc.logs.tables.time_column import UNITS, TimeColumn, time_column
 from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.extras import missing_extra
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 
 _DELIMITERS = {".csv": ",", ".tsv": "\t"}
 """The delimiter of the cells by the suffix; other tables have a JSON object on each line."""
 TOPIC = "/table"
+_EPISODE = "episode_index"
+"""LeRobot's name of the column that tells the runs of a file apart."""
 _LONG_NAMES = {"name", "signal", "variable", "key", "topic", "field", "series"}
 """Names of the column that names what a row of the long form measures."""
 
@@ -49,9 +54,21 @@ def read(log: OpenLog, sink: Sink, span: Span, suffix: str) -> FileContents | Di
     try:
         delimiter = _DELIMITERS.get(suffix)
         rows = _uncut(csv_rows(text, delimiter), log) if delimiter else json_rows(text)
-        return _read(rows, log, sink, span)
+        return _read(rows, {}, log, sink, span)
     finally:
         text.detach()
+
+
+def read_arrow(log: OpenLog, sink: Sink, span: Span) -> FileContents | Diagnostic:
+    """Pass the rows of a Parquet or Arrow file to a sink; or say why it cannot be read."""
+    try:
+        units, rows = arrow_rows(log.stream, log.size)
+    except ModuleNotFoundError:
+        return missing_extra("this table cannot be read: that needs", ["pyarrow"], "parquet", span)
+    except Exception as error:  # the reader trusts each byte, and each may be wrong
+        reason = str(error).partition("\n")[0][:200] or type(error).__name__
+        return diagnostic("bad_table", span, why=reason)
+    return _read(rows, units, log, sink, span)
 
 
 def _uncut(rows: Iterator[Row], log: OpenLog) -> Iterator[Row]:
@@ -69,20 +86,25 @@ def _uncut(rows: Iterator[Row], log: OpenLog) -> Iterator[Row]:
         yield last if is_whole or last.reason else Row(last.line, (), cut)
 
 
-def _read(rows: Iterator[Row], log: OpenLog, sink: Sink, span: Span) -> FileContents | Diagnostic:
+def _read(
+    rows: Iterator[Row], units: Mapping[str, str], log: OpenLog, sink: Sink, span: Span
+) -> FileContents | Diagnostic:
     head = next(rows, None)
     if head is None:
         return diagnostic("empty_log", span)
-    first = next((row for row in rows if not row.reason), None)
-    if head.reason or first is None:
+    row = first = next(rows, None)
+    while row is not None and row.reason:
+        row = next(rows, None)
+    if head.reason or first is None or row is None:
         return diagnostic("table_without_rows", span)
-    column = time_column(head.texts, first.texts, span)
+    column = time_column(head.texts, row.texts, units, span)
     if isinstance(column, Diagnostic):
         return column
     table = _Table(head.texts, column, sink)
-    table.add(first)
-    for row in rows:
-        table.add(row)
+    for each in chain([first] if first.reason else [], [row], rows):
+        table.add(each)
+        if table.episodes > 1:
+            return diagnostic("several_episodes", span)
     if table.span is None:
         return diagnostic("table_without_rows", span)
     note = diagnostic(
@@ -123,6 +145,13 @@ class _Table:
         self._long = (names[0], by_name["value"]) if is_long else None
         self._gaps: list[_Loss] = []
         self._last: int | None = None
+        self._episode = columns.index(_EPISODE) if _EPISODE in columns else None
+        self._episodes: set[str] = set()
+
+    @property
+    def episodes(self) -> int:
+        """The number of different runs that the rows name."""
+        return len(self._episodes)
 
     def add(self, row: Row) -> None:
         """One row."""
@@ -134,6 +163,8 @@ class _Table:
             else:
                 self._gaps.append(_Loss(row.line, reason, self._last))
             return
+        if self._episode is not None:
+            self._episodes.add(row.texts[self._episode])
         if self._gaps and self._gaps[-1].after is None:
             self._gaps[-1].after = time
         first, last = self.span or (time, time)
@@ -143,10 +174,10 @@ class _Table:
 
     def _messages(self, row: Row) -> Iterator[tuple[str, bytes]]:
         if self._long is None:
-            yield TOPIC, row.payload or as_json(self._names, row.texts)
+            yield TOPIC, row.payload or as_json(self._names, row.cells)
             return
-        name, value = (row.texts[i] for i in self._long)
-        yield f"{TOPIC}/{_identifier(name)}", as_json([("value",)], [value])
+        name, value = self._long
+        yield f"{TOPIC}/{_identifier(row.texts[name])}", as_json([("value",)], [row.cells[value]])
 
     def _stream(self, topic: str) -> ChannelDefinition:
         stream = self._streams.get(topic)

@@ -33,6 +33,13 @@ class Row:
     """Why it cannot be read; empty: it can."""
     payload: bytes = b""
     """The whole row as a JSON object, if the file has it so."""
+    values: Sequence[str | None] | None = None
+    """Its cells as JSON, if the file has types; of each None: it is unknown."""
+
+    @property
+    def cells(self) -> Sequence[str | None]:
+        """Its cells as JSON; of each None: it is unknown."""
+        return [as_value(text) for text in self.texts] if self.values is None else self.values
 
 
 def csv_rows(stream: TextIO, delimiter: str) -> Iterator[Row]:
@@ -78,17 +85,16 @@ def json_rows(stream: TextIO) -> Iterator[Row]:
         yield Row(line, [str(row.get(name, "")) for name in columns], "", text.encode())
 
 
-def as_json(names: Sequence[Sequence[str]], texts: Sequence[str]) -> bytes:
+def as_json(names: Sequence[Sequence[str]], cells: Sequence[str | None]) -> bytes:
     """The cells of a row as a JSON object; an unknown one is left out.
 
     Args:
         names: for each cell the names of its field and of the objects around it; empty: left out.
-        texts: the cells.
+        cells: the cells as JSON.
     """
     fields: dict[str, object] = {}
-    for path, text in zip(names, texts, strict=True):
-        value = as_value(text) if path else None
-        if value is None:
+    for path, value in zip(names, cells, strict=True):
+        if value is None or not path:
             continue
         inside = fields
         for name in path[:-1]:

@@ -8,7 +8,7 @@ size can be anything, and are refused: a wrong unit would make each verdict wron
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from decimal import Decimal, InvalidOperation
 
@@ -60,13 +60,14 @@ class TimeColumn:
 
 
 def time_column(
-    columns: Sequence[str], first: Sequence[str], span: Span
+    columns: Sequence[str], first: Sequence[str], units: Mapping[str, str], span: Span
 ) -> TimeColumn | Diagnostic:
     """The time column of a table.
 
     Args:
         columns: the names of the columns.
         first: the texts of the first row, as many.
+        units: the units of columns whose types state them.
         span: the table, as named on the command line.
     """
     candidates = [
@@ -76,6 +77,7 @@ def time_column(
         return diagnostic("table_without_time", span, columns=", ".join(columns[:8]))
     _, i, unit = min(candidates)
     column, text = columns[i], first[i]
+    unit = units.get(column, unit)
     if unit:
         return TimeColumn(column, unit)
     unit = _unit_of(text)

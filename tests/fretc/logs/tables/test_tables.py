@@ -191,6 +191,12 @@ def test_what_a_row_that_cannot_be_read_says_is_unknown(tmp_path: Path, row: str
     assert "line 3, and 1 after it cannot be read" in told.message
 
 
+def test_lost_rows_before_the_first_whole_one_are_told(tmp_path: Path) -> None:
+    recording = recorded(put(tmp_path, "t_s,x\n1\n2,5\n3,6\n"), "x")
+    assert Code.DAMAGED_CHUNK in codes(recording)
+    assert recording.gaps == ((2 * S, 2 * S),)
+
+
 def test_a_table_that_breaks_off_is_unknown_from_its_last_row_on(tmp_path: Path) -> None:
     recording = recorded(put(tmp_path, "t_s,x\n1,5\n2,6\n3,99"), "x")
     assert recording.samples["x"].values.tolist() == [5.0, 6.0]
