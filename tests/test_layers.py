@@ -21,7 +21,8 @@ compiler.files  compiler.logic.diagrams  compiler.logic.ordering  compiler.logic
 compiler.logic  compiler.formalization  compiler.formalization.numbers
 compiler.situations  compiler.project  compiler.agents  compiler.program  compiler.signals
 compiler.targets  compiler.targets.python  compiler.targets.c  compiler.targets.rust
-compiler.targets.ros  compiler.targets.javascript  compiler.targets.automata  compiler.targets.ajpf
+compiler.targets.java  compiler.targets.ros  compiler.targets.javascript
+compiler.targets.automata  compiler.targets.ajpf
 compiler  compiler.explanation
 fretc.logs.signals  fretc.logs.mcap  fretc.logs.messages  fretc.logs.storage  fretc.logs.windows
 fretc.logs
