@@ -29,7 +29,7 @@ fretc.logs
 fretc.audit.measurements  fretc.audit.phases  fretc.audit.evidence  fretc.audit.store  fretc.audit
 fretc.audit.selection  fretc.audit.outputs  fretc.audit.bindings
 fretc.verification.engines  fretc.verification.monitor  fretc.verification.compiled
-fretc.verification.c  fretc.verification.rust
+fretc.verification.c  fretc.verification.rust  fretc.verification.java
 fretc.verification.javascript  fretc.verification.interceptor
 fretc.verification.loop  fretc.verification.layers  fretc.verification
 fretc.analysis.arena  fretc.analysis.arithmetic  fretc.analysis.games  fretc.analysis.controllers
