@@ -21,7 +21,8 @@ compiler.files  compiler.logic.diagrams  compiler.logic.ordering  compiler.logic
 compiler.logic  compiler.formalization  compiler.formalization.numbers
 compiler.situations  compiler.project  compiler.agents  compiler.program  compiler.signals
 compiler.targets  compiler.targets.python  compiler.targets.c  compiler.targets.rust
-compiler.targets.ros  compiler.targets.javascript  compiler.targets.automata  compiler.targets.ajpf
+compiler.targets.java  compiler.targets.ros  compiler.targets.javascript
+compiler.targets.automata  compiler.targets.ajpf
 compiler  compiler.explanation
 fretc.logs.signals  fretc.logs.mcap  fretc.logs.messages  fretc.logs.storage  fretc.logs.tables
 fretc.logs.windows
@@ -29,7 +30,7 @@ fretc.logs
 fretc.audit.measurements  fretc.audit.phases  fretc.audit.evidence  fretc.audit.store  fretc.audit
 fretc.audit.selection  fretc.audit.outputs  fretc.audit.bindings
 fretc.verification.engines  fretc.verification.monitor  fretc.verification.compiled
-fretc.verification.c  fretc.verification.rust
+fretc.verification.c  fretc.verification.rust  fretc.verification.java
 fretc.verification.javascript  fretc.verification.interceptor
 fretc.verification.loop  fretc.verification.layers  fretc.verification
 fretc.analysis.arena  fretc.analysis.arithmetic  fretc.analysis.games  fretc.analysis.controllers

@@ -242,6 +242,8 @@ def _emitted(
     one_file = target.together or (options.one_file and target.joins)
     if one_file:
         whole += name_collisions(requirements)
+    if options.one_file and target.joins and not (wrong or whole):
+        whole += [refusal] if (refusal := target.refuse_joint(requirements)) else []
     if target.together and any(
         each.is_error and each.code is Code.BAD_SETTINGS for each in project.diagnostics
     ):  # The settings name the maintainer of a package.
