@@ -256,3 +256,8 @@ def test_the_interceptor_needs_the_standard_library_only() -> None:
 def test_the_ticks_need_the_standard_library_only() -> None:
     """Their text is copied into every emitted node."""
     assert libraries(ROOT / "monitors/ticking.py") <= {*sys.stdlib_module_names}
+
+
+def test_the_script_of_a_bundle_needs_the_standard_library_only() -> None:
+    """Its text is copied into every bundle, which runs where fretc is not installed."""
+    assert libraries(ROOT / "compiler/targets/ajpf/runner.py") <= {*sys.stdlib_module_names}
