@@ -236,9 +236,8 @@ class _Setting:
                 }
                 for verdict in (RealizabilityVerdict.REALIZABLE, RealizabilityVerdict.UNREALIZABLE)
             )
-            chosen = (
-                self._roles[name] for requirement in self._rules for name in requirement.variables
-            )
+            names = (name for requirement in self._rules for name in requirement.variables)
+            chosen = [*map(self._roles.get, names)]
             if not self._assumptions and kept.issuperset(self._ids):
                 yield Consistency(self._ids, True)
             elif not self._assumptions and lost & {*self._ids} and Role.INPUT not in chosen:

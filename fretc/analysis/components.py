@@ -16,10 +16,13 @@ Tokens = frozenset[str]
 
 
 def tokens(requirement: FormalizedRequirement, roles: Roles, *kinds: Role) -> Tokens:
-    """Variables of these roles that a requirement reads; for a bound proposition, its signals."""
+    """Variables of these roles that a requirement reads; for a bound proposition, its signals.
+
+    A variable without a role may have any of them.
+    """
     names: set[str] = set()
     for name in requirement.variables:
-        if roles[name] in kinds:
+        if roles.get(name) in (None, *kinds):
             bound = (
                 requirement.declarations.propositions.get(name)
                 if requirement.declarations

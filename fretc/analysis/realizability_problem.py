@@ -17,7 +17,7 @@ from fretc.analysis.arena.counters import counter
 from fretc.analysis.arena.memory import RequirementCounter, side_by_side
 from fretc.analysis.arena.product import Arena, arena
 from fretc.analysis.arena.propositions import Propositions
-from fretc.analysis.arena.roles import Roles
+from fretc.analysis.arena.roles import Roles, missing_role
 from fretc.analysis.arena.variables import Numbers, UnsupportedError, numbers
 from fretc.analysis.components import about
 from fretc.analysis.games.game import Game, upheld
@@ -295,8 +295,17 @@ def _built(
     favoured: Role = Role.INPUT,
     steps: int = 0,
 ) -> RealizabilityProblem:
-    alphabet = alphabet_of([*requirements, *near], roles, fresh, favoured, budget, steps)
-    built = arena(requirements, near, alphabet, fresh, as_fret=as_fret)
+    beyond = {
+        requirement.id: f"`{missing}` has no single role"
+        for requirement in requirements
+        if (missing := missing_role(requirement, roles)) is not None
+    }
+    for assumption in near:
+        if (missing := missing_role(assumption, roles)) is not None:
+            raise UnsupportedError(f"of the assumption {assumption.id}: `{missing}` has no role")
+    counted = [requirement for requirement in requirements if requirement.id not in beyond]
+    alphabet = alphabet_of([*counted, *near], roles, fresh, favoured, budget, steps)
+    built = arena(counted, near, alphabet, fresh, as_fret=as_fret, beyond=beyond)
     return RealizabilityProblem(
         tuple(requirements), tuple(near), built, roles, as_fret, favoured, steps, fresh
     )

@@ -80,7 +80,7 @@ def component(
         name
         for requirement in requirements
         for name in requirement.variables
-        if roles[name] is Role.OUTPUT
+        if roles.get(name) is Role.OUTPUT
     )
     ids = tuple(requirement.id for requirement in requirements)
     return Component(ids, tuple(dict.fromkeys(names)), answer, why, seconds)
@@ -119,7 +119,7 @@ def _unrolled(
     from fretc.analysis.games.lassos import NoShortRun, lasso
 
     chosen = [
-        setting.roles[name]
+        setting.roles.get(name)
         for requirement in setting.requirements
         for name in requirement.variables
     ]

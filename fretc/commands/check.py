@@ -164,7 +164,7 @@ def _value(read: T | Diagnostic, diagnostics: list[Diagnostic]) -> T | None:
 def _together(project: Project, known: AnalyzedSet | None) -> Iterator[Diagnostic]:
     """F561 for each conflict, F562 if realizability is unknown."""
     from fretc.analysis.analysis import DEFAULT
-    from fretc.analysis.arena.roles import roles
+    from fretc.analysis.arena.systems import systems
     from fretc.analysis.assumptions import assumptions
     from fretc.analysis.evidence import remarks, suspicions
     from fretc.commands.analyze import asked
@@ -172,14 +172,13 @@ def _together(project: Project, known: AnalyzedSet | None) -> Iterator[Diagnosti
     requirements = project.in_force
     assumed, said = assumptions(requirements, project.declarations)
     yield from said
-    chosen = roles([*requirements, *assumed])
-    if isinstance(chosen, tuple):
-        yield from chosen
-    elif requirements and not has_errors(said):
+    examined = systems(requirements, assumed)
+    yield from examined.mistakes
+    if requirements and not has_errors(said):
         if known is not None and not [*suspicions(known.document, requirements, assumed)]:
             analysis = known.document.analysis
         else:
-            analysis, _ = asked(requirements, assumed, chosen, DEFAULT)
+            analysis, _ = asked(requirements, assumed, examined, DEFAULT)
         yield from remarks(analysis, requirements)
 
 

@@ -273,6 +273,18 @@ def test_a_text_that_is_no_fretish_is_taken_over_and_told(fretc: Fretc) -> None:
     assert written()["requirements.fret"].endswith("+++\nthe sw must satisfy p\n")
 
 
+def test_a_key_word_as_a_name_gets_quotes(fretc: Fretc) -> None:
+    """The name stays the same, so that variables and formulas do."""
+    text = "the sw shall always satisfy next => !last & next"
+    run = fretc("import", export([record("R1", text)]))
+    assert run.status == 0
+    assert run.err.count("F109 warning: `next` is a key word of FRETish: it is imported as") == 2
+    written_ = written()["requirements.fret"]
+    assert written_.endswith('+++\nthe sw shall always satisfy "next" => !"last" & "next"\n')
+    assert f'fulltext = "{text}"' in written_
+    assert fretc("requirements", "--emit", "ltl", "-o", "-").status == 0
+
+
 # Ids and projects -----------------------------------------------------------------------------
 
 

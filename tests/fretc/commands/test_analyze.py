@@ -291,12 +291,10 @@ def test_components_of_an_export_are_told_apart(fretc: Fretc, tmp_path: Path) ->
     assert fretc("analyze", folder, "--component", "sender").status == 0
     assert fretc("analyze", folder, "--component", "receiver").status == 1
     both = fretc("analyze", folder)
-    assert both.status == 2
-    assert both.err.startswith(
-        "F907 `link` is an output of `sender`, and an input of `receiver`: these are two "
-        "different systems\n"
-    )
-    assert both.err.endswith("help: analyze one of them: `--component receiver`\n")
+    assert both.status == 1
+    assert "  ✔ S1 (about link): the system has a strategy\n" in both.out
+    assert "  ✘ R1: the environment wins\n" in both.out
+    assert "inputs: link of receiver\noutputs: link of sender\n" in both.out
 
 
 # `fretc check --analyze` -----------------------------------------------------------------------
