@@ -25,6 +25,7 @@ from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, did_you_mean
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
+from fretish.documents import ASSUMPTION
 from fretish.parser import parse
 from fretish.reading.limits import with_budget
 
@@ -52,6 +53,8 @@ class ImportResult:
     diagnostics: tuple[Diagnostic, ...] = ()
     requirements: int = 0
     variables: int = 0
+    assumptions: int = 0
+    """Number of requirements whose id makes them assumptions, as in FRET."""
     mapping: Mapping[str, str] = field(default_factory=dict)
 
 
@@ -93,7 +96,8 @@ def _from_json(source: Source) -> ImportResult:
     kept: list[Mapping[str, Any]] = []
     declared = variables_of(variables, source, diagnostics, kept)
     files = [*_documents(entries), *glossary(declared, kept)]
-    return ImportResult(tuple(files), tuple(diagnostics), len(entries), len(declared))
+    assumed = sum("kind" in each.header for each in entries)
+    return ImportResult(tuple(files), tuple(diagnostics), len(entries), len(declared), assumed)
 
 
 def _parts(data: Any) -> tuple[list[Mapping[str, Any]], list[Mapping[str, Any]]] | str:
@@ -207,6 +211,7 @@ def _header(
     )
     header: dict[str, Any] = {
         "id": id,
+        "kind": ASSUMPTION if ASSUMPTION in text_of(record.get("reqid")).lower() else "",
         **own_texts,
         "parents": parents,
         "rationale": text_of(record.get("rationale")),
@@ -285,7 +290,8 @@ def _from_csv(source: Source, columns: Mapping[str, str]) -> ImportResult:
         return ImportResult((), (chosen,))
     diagnostics: list[Diagnostic] = []
     entries = list(_requirements((_row(row, chosen) for row in rows), source, diagnostics))
-    return ImportResult(tuple(_documents(entries)), tuple(diagnostics), len(entries), 0, chosen)
+    files, assumed = tuple(_documents(entries)), sum("kind" in each.header for each in entries)
+    return ImportResult(files, tuple(diagnostics), len(entries), 0, assumed, chosen)
 
 
 _DELIMITERS = ",;\t"

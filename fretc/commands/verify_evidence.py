@@ -354,7 +354,7 @@ def _asked_again(
     """The repeated analysis of the requirement set, compared with the stored one."""
     from fretc.analysis.analysis import AnalysisOptions
     from fretc.analysis.arena.systems import systems
-    from fretc.analysis.assumptions import assumptions
+    from fretc.analysis.assumptions import assumptions, guarantees
     from fretc.analysis.evidence import changes
     from fretc.commands.analyze import asked
     from fretc.reproduction.outcome import TOGETHER, differs, unknown
@@ -364,11 +364,11 @@ def _asked_again(
         why = f"the analysis was not repeated: `{'--no-analysis' if skip else '--only'}`"
         return (unknown(TOGETHER, "", why),)
     document = known.document
-    in_force = project.in_force
+    in_force = guarantees(project.in_force)
     requirements = [
         requirement for requirement in in_force if requirement.id in document.requirements
     ]
-    assumed, remarks = assumptions(in_force, project.declarations)
+    assumed, remarks = assumptions(project.in_force, project.declarations)
     if has_errors(remarks):
         fail(*remarks)
     examined = systems(requirements, assumed)

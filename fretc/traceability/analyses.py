@@ -12,7 +12,7 @@ from itertools import chain
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.project.project import Project
 from fretc.analysis.arena.systems import systems
-from fretc.analysis.assumptions import assumptions
+from fretc.analysis.assumptions import assumptions, guarantees
 from fretc.analysis.components import by_outputs
 from fretc.analysis.evidence import AnalyzedRequirement, AnalyzedSet, members
 from fretc.analysis.findings import Analysis, RealizabilityVerdict
@@ -45,8 +45,8 @@ def answers(analyzed: AnalyzedSet | None, project: Project) -> Mapping[str, Real
     if analyzed is None:
         return {}
     document = analyzed.document
-    requirements = project.in_force
-    assumed, _ = assumptions(requirements, project.declarations)
+    requirements = guarantees(project.in_force)
+    assumed, _ = assumptions(project.in_force, project.declarations)
     old = _differences(document.requirements, members(requirements))
     promises = _differences(document.assumptions, members(assumed))
     now = _components(requirements, assumed)

@@ -66,8 +66,7 @@ def systems(
 
     Args:
         requirements: the requirements.
-        assumptions: the assumptions about the environment. One whose component has requirements
-            concerns only these, if the components are different systems.
+        assumptions: the assumptions about the environment.
     """
     members: dict[str, list[FormalizedRequirement]] = {}
     for requirement in requirements:
@@ -77,17 +76,22 @@ def systems(
         return Systems((System(tuple(requirements), tuple(assumptions), chosen),), mistakes)
     found: list[System] = []
     wrong: list[Diagnostic] = []
-    for component, own in members.items():
-        near = [
-            assumption
-            for assumption in assumptions
-            if assumption.sentence.component not in members
-            or assumption.sentence.component == component
-        ]
+    for own in members.values():
+        near = about_same_variables(own, assumptions)
         chosen, mistakes = roles([*own, *near])
         wrong.extend(mistakes)
-        found.append(System(tuple(own), tuple(near), chosen))
+        found.append(System(tuple(own), near, chosen))
     return Systems(tuple(found), tuple(dict.fromkeys(wrong)))
+
+
+def about_same_variables(
+    requirements: Sequence[FormalizedRequirement], assumptions: Sequence[FormalizedRequirement]
+) -> tuple[FormalizedRequirement, ...]:
+    """The assumptions for which no name has another role than for the requirements.
+
+    Where a name has another role, it is a variable of another system.
+    """
+    return tuple(each for each in assumptions if not _differ([*requirements, each]))
 
 
 def _differ(requirements: Sequence[FormalizedRequirement]) -> bool:

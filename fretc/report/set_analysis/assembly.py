@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from compiler.project.project import Project
-from fretc.analysis.assumptions import assumptions
+from fretc.analysis.assumptions import assumptions, guarantees
 from fretc.analysis.evidence import AnalysisDocument, AnalyzedSet, suspicions
 from fretc.analysis.findings import Analysis, RealizabilityVerdict
 from fretc.analysis.text_output import SIGNS, columns, lanes, remarks
@@ -43,8 +43,8 @@ def set_analysis(known: AnalyzedSet, project: Project, anchors: Mapping[str, str
         project: the present project.
         anchors: id → anchor of the requirement.
     """
-    requirements = project.in_force
-    assumed, mistakes = assumptions(requirements, project.declarations)
+    requirements = guarantees(project.in_force)
+    assumed, mistakes = assumptions(project.in_force, project.declarations)
     old = [
         *suspicions(known.document, requirements, assumed),
         *(

@@ -285,6 +285,15 @@ def test_a_key_word_as_a_name_gets_quotes(fretc: Fretc) -> None:
     assert fretc("requirements", "--emit", "ltl", "-o", "-").status == 0
 
 
+def test_an_id_that_contains_assumption_makes_an_assumption(fretc: Fretc) -> None:
+    """FRET's convention: it has no field for it, and ignores case."""
+    names = ("WIND_assumption", "Assumption-2", "ASSUME-3")
+    run = fretc("import", export([record(id, "the sw shall always satisfy p") for id in names]))
+    assert run.err.endswith("imported 3 requirements (2 of them assumptions), 0 variables\n")
+    made, _ = documents.requirements(Source("r.fret", written()["requirements.fret"]))
+    assert [each.id for each in made if each.is_assumption] == ["WIND_assumption", "Assumption-2"]
+
+
 # Ids and projects -----------------------------------------------------------------------------
 
 

@@ -297,6 +297,54 @@ def test_components_of_an_export_are_told_apart(fretc: Fretc, tmp_path: Path) ->
     assert "inputs: link of receiver\noutputs: link of sender\n" in both.out
 
 
+# Assumptions by their kind ---------------------------------------------------------------------
+
+ASSUMED = "the operator shall never satisfy start & stop"
+
+
+def with_assumption(folder: Path, sentence: str = ASSUMED) -> str:
+    written(folder, FIGHT)
+    (folder / "a1.fret").write_text(f'+++\nid = "A1"\nkind = "assumption"\n+++\n{sentence}\n')
+    return str(folder)
+
+
+@pytest.mark.slow
+def test_a_requirement_of_this_kind_is_assumed_as_a_sentence_of_the_bindings(
+    fretc: Fretc, tmp_path: Path
+) -> None:
+    by_kind, by_table = (tmp_path / name for name in ("kind", "table"))
+    for each in (by_kind, by_table):
+        each.mkdir()
+    table = f'[[assume.requirement]]\nid = "A1"\nsentence = "{ASSUMED}"\n'
+    folders = with_assumption(by_kind), str(written(by_table, FIGHT, more=table))
+    runs = [fretc("analyze", folder, "--format", "json") for folder in folders]
+    found, other = (json.loads(run.out) for run in runs)
+    for each in (*found["components"], *other["components"]):
+        del each["seconds"]
+    assert found == other
+    assert [each["id"] for each in found["assumptions"]] == ["A1"]
+
+
+def test_check_lists_assumptions_and_warns_of_one_about_outputs(
+    fretc: Fretc, tmp_path: Path
+) -> None:
+    run = fretc("check", "--requirements", with_assumption(tmp_path))
+    assert "assumptions about the environment: A1\n3 requirements: " in run.err
+    assert "F563" not in run.err
+    run = fretc("check", "--requirements", with_assumption(tmp_path, "m shall always satisfy run"))
+    assert (
+        "F563 warning: A1 is an assumption about outputs alone: `run`\n"
+        f"  --> {tmp_path}/a1.fret:3:8\n"
+    ) in run.err
+    counts = json.loads(fretc("check", "--requirements", str(tmp_path), "--format", "json").out)
+    assert counts["assumptions"] == ["A1"]
+
+
+def test_assumptions_alone_are_nothing_to_analyze(fretc: Fretc, tmp_path: Path) -> None:
+    write("a.fret", f'+++\nid = "A1"\nkind = "assumption"\n+++\n{ASSUMED}\n')
+    assert fretc("analyze", "a.fret").err.startswith("F909 there is no requirement to analyze")
+
+
 # `fretc check --analyze` -----------------------------------------------------------------------
 
 
