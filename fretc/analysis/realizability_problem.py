@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import field, replace
 from itertools import chain, repeat
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.letters import comparisons
+from compiler.formalization.letters import all_comparisons
 from compiler.formalization.resolution import candidates
 from compiler.logic.diagrams import decision_diagrams as bdd
 from compiler.logic.diagrams.decision_diagrams import Function
@@ -19,7 +19,7 @@ from fretc.analysis.arena.product import Arena, arena
 from fretc.analysis.arena.propositions import Propositions
 from fretc.analysis.arena.roles import Roles, missing_role
 from fretc.analysis.arena.variables import Numbers, UnsupportedError, numbers
-from fretc.analysis.components import about
+from fretc.analysis.components import about, parts
 from fretc.analysis.games.game import Game, upheld
 from fretc.analysis.games.game_traces import Run
 from fretc.analysis.games.replay import remembering
@@ -216,6 +216,27 @@ class RealizabilityProblem:
         )
 
     @property
+    def parts(self) -> Iterator[tuple[FormalizedRequirement, ...]]:
+        """Some of the requirements that may be decided where the whole problem is not."""
+        alphabet = self.arena.alphabet
+        atoms = alphabet.uncertain_atoms(Role.INPUT) | alphabet.uncertain_atoms(Role.OUTPUT)
+        uncertain = [each.id for each in self.requirements if not atoms.isdisjoint(_atoms(each))]
+        return parts(self.requirements, self.arena.beyond, uncertain, self.roles)
+
+    def part(
+        self, requirements: Sequence[FormalizedRequirement], budget: Budget
+    ) -> RealizabilityProblem:
+        """The problem of some of the requirements, with an alphabet of their own.
+
+        Raises:
+            UnsupportedError: an assumption has no counter.
+            OutOfTimeError: solving their comparisons takes longer than the budget.
+        """
+        return stage(
+            requirements, self.assumptions, self.roles, as_fret=self.as_fret, budget=budget
+        )
+
+    @property
     def of_inputs(self) -> str | None:
         """Why the environment has valuations that may be impossible; None: it has none."""
         return self.arena.alphabet.uncertainties.get(Role.INPUT)
@@ -315,7 +336,7 @@ def _has_numbers(requirement: FormalizedRequirement) -> bool:
     """Whether an atom of the requirement compares numbers."""
     declared = requirement.declarations
     if declared is None:
-        return bool(comparisons(requirement))
+        return bool(all_comparisons(requirement))
     return bool(requirement.stated) or not declared.propositions.keys().isdisjoint(
         requirement.variables
     )
