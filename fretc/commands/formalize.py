@@ -335,7 +335,8 @@ def import_(
     if clashes and output != "-" and not force:
         fail(diagnostic("output_exists", path=str(Path(output) / clashes[0])))
     _deliver_all(files, output)
-    counts = f"{result.requirements} requirements, {result.variables} variables"
+    assumed = f" ({result.assumptions} of them assumptions)" if result.assumptions else ""
+    counts = f"{result.requirements} requirements{assumed}, {result.variables} variables"
     print_status(f"imported {counts}")
 
 

@@ -183,6 +183,7 @@ class Code(Enum):
     NOT_COMPARABLE = ("F560", "audits cannot be compared")
     UNREALIZABLE = ("F561", "requirements are not realizable together")
     NOT_ANALYZED = ("F562", "it is not known whether requirements are realizable together")
+    ASSUMED_OF_SYSTEM = ("F563", "an assumption is about what the system chooses")
     BAD_MANIFEST = ("F545", "the manifest cannot be read")
     OTHER_TEXTS = ("F546", "the texts of a review do not match its fingerprints")
     BAD_SIGNERS = ("F548", "the list of signers cannot be read")

@@ -77,6 +77,7 @@ def listed(name: str) -> str:
         "keywords": sorted(keywords.RESERVED),
         "units": list(units.NAMES),
         "statuses": list(documents.STATUSES),
+        "kinds": list(documents.KINDS),
     }[name]
     return ", ".join(f"`{word}`" for word in words)
 
