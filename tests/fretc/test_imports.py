@@ -22,9 +22,20 @@ ALWAYS = {
     "mujoco",
     "numpy.ma",
 }
-ALWAYS |= {"foxglove", "pyarrow", "rosbags", "spot", "websockets", "xml", "z3", "zenoh", "zipfile"}
+ALWAYS |= {
+    "foxglove",
+    "lark",
+    "pyarrow",
+    "rosbags",
+    "spot",
+    "websockets",
+    "xml",
+    "z3",
+    "zenoh",
+    "zipfile",
+}
 TEXTS = ALWAYS | {"mcap", "multiprocessing", "numpy", "socket", "subprocess", "zstandard"}
-HELP = TEXTS | {"jinja2", "lark", "tomllib"}
+HELP = TEXTS | {"jinja2", "tomllib"}
 REPORT = ALWAYS | {"mcap", "multiprocessing", "numpy", "socket"}
 COMMANDS: dict[tuple[str, ...], set[str]] = {
     ("--version",): HELP | {"compiler.logic.formula", "difflib", "msgspec"},
