@@ -21,11 +21,8 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, DiagnosticError
 from fretish.diagnostics.fixes import FixedText
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
-from fretish.error_rules.operators import unknown_character
-from fretish.error_rules.unexpected import Lexeme, Unexpected
 from fretish.reading.grammars import Grammar
 from fretish.reading.lalr import (
-    END,
     Parser,
     SyntaxTreeNode,
     Token,
@@ -33,7 +30,6 @@ from fretish.reading.lalr import (
     UnexpectedTokenError,
     build,
 )
-from fretish.syntax_errors import bad_duration, bad_probability, explain
 from fretish.units import NAMES, number
 from fretish.units import split as split_quantity
 
@@ -130,8 +126,12 @@ def _parse_tree(text: Span, start: str) -> list[SyntaxTreeNode] | Diagnostic:
     try:
         return _parser().parse(text.text, start)
     except UnexpectedTokenError as error:
-        return _unexpected(error, text)
+        from fretish.syntax_errors import unexpected_word  # none in most texts
+
+        return unexpected_word(error, text)
     except UnexpectedCharacterError as error:
+        from fretish.error_rules.operators import unknown_character
+
         return unknown_character(text, error.position)
 
 
@@ -387,6 +387,8 @@ class _TreeBuilder:
         bound = _number(text)
         impossible = bound == 0 if op == "<" else op == ">" and bound == 1
         if bound is None or impossible or not 0 <= bound <= 1:
+            from fretish.syntax_errors import bad_probability
+
             raise _ParseError(bad_probability(_meta_span(meta)))
         return s.Probability(op, bound, text)
 
@@ -394,6 +396,8 @@ class _TreeBuilder:
         *digits, unit = children
         text = "".join(digits)
         if not text.isdigit() or len(text) > 15:
+            from fretish.syntax_errors import bad_duration
+
             digits_span = _span(children[0], digits[-1])
             unit_name = f"{_UNITS[unit.type]}s"
             raise _ParseError(bad_duration(digits_span, unit_name, _meta_span(meta)))
@@ -427,44 +431,3 @@ def _number(digits: str) -> Fraction | None:
         return number(digits)
     except ValueError:
         return None
-
-
-# Syntax errors ---------------------------------------------------------------------------
-
-
-def _unexpected(error: UnexpectedTokenError, text: Span) -> Diagnostic:
-    token, before = error.token, error.previous
-    if token.type == "QUANTITY" and "NUMBER" in error.accepts:
-        in_duration = before is not None and before.type in ("WITHIN", "FOR", "AFTER")
-        return (
-            explain(_unit_error(token, text))
-            if in_duration
-            else bad_probability(_lexeme(token, text).span)
-        )
-    return explain(
-        Unexpected(
-            _lexeme(token, text),
-            _lexeme(before, text) if before is not None else None,
-            error.accepts,
-            text,
-        )
-    )
-
-
-def _unit_error(token: Token, text: Span) -> Unexpected:
-    """The error of a duration in an SI unit, `within 5 s`: FRETish requires `seconds`."""
-    digits, unit = split_quantity(str(token))
-    start, end = token.start_pos, token.end_pos
-    return Unexpected(
-        Lexeme("ID", text.part(end - len(unit), end)),
-        Lexeme("NUMBER", text.part(start, start + len(digits))),
-        frozenset(_UNITS),
-        text,
-    )
-
-
-def _lexeme(token: Token, text: Span) -> Lexeme:
-    if token.type == END:
-        end = len(text.text.rstrip())
-        return Lexeme(token.type, text.part(end, end))
-    return Lexeme(token.type, text.part(token.start_pos, token.end_pos))

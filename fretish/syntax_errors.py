@@ -31,9 +31,10 @@ from fretish.error_rules.order import (
     superfluous_article,
     wrong_timing,
 )
-from fretish.error_rules.unexpected import STARTS_EXPRESSION, Unexpected, not_fretish
+from fretish.error_rules.unexpected import STARTS_EXPRESSION, Lexeme, Unexpected, not_fretish
 from fretish.keywords import KEYWORDS
-from fretish.units import number, unit, unknown_unit
+from fretish.reading.lalr import END, Token, UnexpectedTokenError
+from fretish.units import number, split, unit, unknown_unit
 
 _GROUPS: tuple[tuple[str, frozenset[str]], ...] = (
     ("a scope (`in m`, `before m`, ...)", frozenset({"DURING", "EXCEPT", "ONLY", "WHILE"})),
@@ -75,6 +76,45 @@ _MICROSECONDS = {
     "hours": 3600 * 10**6,
 }  # fmt: skip
 """Unit of time → its length in microseconds."""
+
+
+def unexpected_word(error: UnexpectedTokenError, text: Span) -> Diagnostic:
+    """The diagnostic of the first word that the grammar does not allow at its place."""
+    token, before = error.token, error.previous
+    if token.type == "QUANTITY" and "NUMBER" in error.accepts:
+        in_duration = before is not None and before.type in ("WITHIN", "FOR", "AFTER")
+        return (
+            explain(_unit_error(token, text))
+            if in_duration
+            else bad_probability(_lexeme(token, text).span)
+        )
+    return explain(
+        Unexpected(
+            _lexeme(token, text),
+            _lexeme(before, text) if before is not None else None,
+            error.accepts,
+            text,
+        )
+    )
+
+
+def _unit_error(token: Token, text: Span) -> Unexpected:
+    """The error of a duration in an SI unit, `within 5 s`: FRETish requires `seconds`."""
+    digits, unit = split(str(token))
+    start, end = token.start_pos, token.end_pos
+    return Unexpected(
+        Lexeme("ID", text.part(end - len(unit), end)),
+        Lexeme("NUMBER", text.part(start, start + len(digits))),
+        frozenset(_UNITS),
+        text,
+    )
+
+
+def _lexeme(token: Token, text: Span) -> Lexeme:
+    if token.type == END:
+        end = len(text.text.rstrip())
+        return Lexeme(token.type, text.part(end, end))
+    return Lexeme(token.type, text.part(token.start_pos, token.end_pos))
 
 
 def explain(unexpected: Unexpected) -> Diagnostic:

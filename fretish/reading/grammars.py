@@ -6,8 +6,8 @@ grammar. They are JSON and contain no code.
 
 from __future__ import annotations
 
-import gzip
 import json
+import zlib
 from collections.abc import Iterator, Mapping
 from importlib import import_module
 from pathlib import Path
@@ -19,6 +19,9 @@ from fretish.reading.lalr import Parser, Tables
 if TYPE_CHECKING:
     from lark import Lark
     from lark.grammar import Rule
+
+_GZIP = 31
+"""The value by which `zlib` reads and writes the format of gzip."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,13 +65,13 @@ class Grammar:
     def tables(self) -> bytes:
         """The contents of the file of tables, computed from the grammar."""
         text = json.dumps({"key": self._key(), "tables": _tables(self.lark())._asdict()})
-        return gzip.compress(text.encode(), mtime=0)
+        return zlib.compress(text.encode(), 9, _GZIP)
 
     def _stored(self) -> Tables | None:
         file = self._folder / self.tables_file
         if not file.is_file():
             return None
-        document: Mapping[str, Any] = json.loads(gzip.decompress(file.read_bytes()))
+        document: Mapping[str, Any] = json.loads(zlib.decompress(file.read_bytes(), _GZIP))
         return Tables(**document["tables"]) if document["key"] == self._key() else None
 
     @property
