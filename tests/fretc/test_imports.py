@@ -34,9 +34,17 @@ ALWAYS |= {
     "zenoh",
     "zipfile",
 }
-TEXTS = ALWAYS | {"mcap", "multiprocessing", "numpy", "socket", "subprocess", "zstandard"}
+TEXTS = ALWAYS | {
+    "fretish.syntax_errors",
+    "mcap",
+    "multiprocessing",
+    "numpy",
+    "socket",
+    "subprocess",
+    "zstandard",
+}
 HELP = TEXTS | {"jinja2", "tomllib"}
-REPORT = ALWAYS | {"mcap", "multiprocessing", "numpy", "socket"}
+REPORT = ALWAYS | {"compiler.targets.ajpf.bundle", "mcap", "multiprocessing", "numpy", "socket"}
 COMMANDS: dict[tuple[str, ...], set[str]] = {
     ("--version",): HELP | {"compiler.logic.formula", "difflib", "msgspec"},
     ("--help",): HELP,
