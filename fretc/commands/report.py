@@ -149,8 +149,7 @@ def report(
     from fretc.attestation.signatures import SIGNERS
     from fretc.audit.evidence.reader import not_audited
     from fretc.report.make import make
-    from fretc.verification.ajpf_results import default_paths as results
-    from fretc.verification.reader import default_path
+    from fretc.verification.reader import ajpf_results, default_path
 
     outputs = _outputs(output_format, output, places)
     for kind, _ in outputs:
@@ -167,14 +166,14 @@ def report(
     signers = signers or sibling_path(requirements, SIGNERS)
     verification = verification or default_path()
     analysis = analysis or analyzed()
-    ajpf_results = ajpf or results()
+    results = ajpf or ajpf_results()
     outcome = make(
         project,
         evidence,
         lock=lock,
         waivers=waivers,
         verification=verification,
-        ajpf=ajpf_results,
+        ajpf=results,
         signers=signers,
         analysis=analysis,
         requirements=requirements,
@@ -187,7 +186,7 @@ def report(
     inset = _inset(project, outcome.details.evidence, analysis) if play else None
     subject = FormInput(outcome.report, project, outcome.details, outcome.diagnostics, inset)
     others = (bindings, hazards, verification, analysis, lock, waivers, signers)
-    inputs = filter(None, (*others, *ajpf_results))
+    inputs = filter(None, (*others, *results))
     read = [evidence, *files, *companions(files), *inputs, *outcome.details.logs]
     _deliver(outputs, subject, read)
     if has_errors([*project.diagnostics, *outcome.diagnostics]):

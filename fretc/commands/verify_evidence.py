@@ -397,7 +397,7 @@ def _report(
     from compiler.project.paths import sibling_path
     from fretc.attestation.signatures import SIGNERS
     from fretc.report.make import make
-    from fretc.verification.ajpf_results import default_paths
+    from fretc.verification.reader import ajpf_results
 
     source = or_fail(read(path))
     names = [sibling_path(requirements, name) for name in ("fretc.lock", "waivers.toml", SIGNERS)]
@@ -407,7 +407,7 @@ def _report(
         lock=names[0],
         waivers=names[1],
         verification=verification,
-        ajpf=default_paths(),
+        ajpf=ajpf_results(),
         signers=names[2],
         analysis=analysis,
         requirements=requirements,

@@ -55,9 +55,10 @@ from monitors import kernel
 
 def report(inputs: Inputs) -> tuple[ReportView, Details, tuple[Diagnostic, ...]]:
     """The report, the evidence behind its rows, and diagnostics about its files."""
-    project, evidence = inputs.project, inputs.evidence
+    project = inputs.project
     lock, together = inputs.lock, inputs.together
-    summaries = ResultSummaries.of(evidence) if evidence else None
+    summaries = ResultSummaries.of(inputs.evidence) if inputs.evidence else None
+    evidence = summaries.source if summaries else None
     runs_by_key = runs(summaries)
     all_runs = tuple(runs_by_key.values())
     assessed = assessments(project, summaries, lock, inputs.waivers, inputs.proofs, together)

@@ -67,7 +67,7 @@ def read_arrow(log: OpenLog, sink: Sink, span: Span) -> FileContents | Diagnosti
         return missing_extra("this table cannot be read: that needs", ["pyarrow"], "parquet", span)
     except Exception as error:  # the reader trusts each byte, and each may be wrong
         reason = str(error).partition("\n")[0][:200] or type(error).__name__
-        return diagnostic("bad_table", span, why=reason)
+        return diagnostic("unreadable_table", span, why=reason)
     return _read(rows, units, log, sink, span)
 
 
