@@ -113,6 +113,7 @@ def _forms(command: Callable[..., None]) -> Callable[..., None]:
     is_flag=True,
     help="Include the page of `fretc play` in the HTML page.",
 )
+@click.option("--open", "opens", is_flag=True, help="Open the HTML page in a browser.")
 @click.option(
     "--strict",
     is_flag=True,
@@ -131,6 +132,7 @@ def report(
     waivers: str | None,
     signers: str | None,
     play: bool,
+    opens: bool,
     strict: bool,
     output_format: str | None,
     output: str | None,
@@ -189,6 +191,9 @@ def report(
     inputs = filter(None, (*others, *results))
     read = [evidence, *files, *companions(files), *inputs, *outcome.details.logs]
     _deliver(outputs, subject, read)
+    if opens:
+        for path in [path for kind, path in outputs if kind.name == "html" and path != "-"]:
+            click.launch(path)
     if has_errors([*project.diagnostics, *outcome.diagnostics]):
         raise SystemExit(EXIT_USAGE)
     raise SystemExit(_status(outcome.report) if strict else EXIT_OK)
