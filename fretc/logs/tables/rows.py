@@ -7,6 +7,7 @@ import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from decimal import Decimal
+from functools import lru_cache
 from typing import TextIO
 
 from fretish.classes.frozen import dataclass
@@ -19,6 +20,9 @@ _WORDS = {"true": "true", "false": "false", "nan": '"NaN"'}
 _INFINITE = {"inf": '"Infinity"', "infinity": '"Infinity"'}
 _NOT_TEXT = re.compile(r"[\ud800-\udfff]")
 """Bytes that are not UTF-8."""
+
+
+_quoted = lru_cache(4096)(json.dumps)
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +63,7 @@ def csv_rows(stream: TextIO, delimiter: str) -> Iterator[Row]:
         columns = columns or len(texts)
         if len(texts) != columns:
             yield Row(reader.line_num, (), f"it has {len(texts)} of {columns} cells")
-        elif any(map(_NOT_TEXT.search, texts)):
+        elif not (line := "".join(texts)).isascii() and _NOT_TEXT.search(line):
             yield Row(reader.line_num, (), "it is not UTF-8")
         else:
             yield Row(reader.line_num, texts)
@@ -105,6 +109,8 @@ def as_json(names: Sequence[Sequence[str]], cells: Sequence[str | None]) -> byte
 
 def as_value(text: str) -> str | None:
     """A cell as JSON; None: it is unknown."""
+    if _PLAIN.fullmatch(text):
+        return text
     bare = text.strip()
     word = bare.lower()
     if word in _UNKNOWN:
@@ -117,12 +123,12 @@ def as_value(text: str) -> str | None:
         return bare
     if _NUMBER.fullmatch(bare):
         return repr(float(bare))
-    return json.dumps(bare)
+    return _quoted(bare)
 
 
 def _written(fields: Mapping[str, object]) -> str:
     inside = (
-        f"{json.dumps(name)}:{value if isinstance(value, str) else _written(value)}"  # type: ignore[arg-type]
+        f"{_quoted(name)}:{value if isinstance(value, str) else _written(value)}"  # type: ignore[arg-type]
         for name, value in fields.items()
     )
     return f"{{{','.join(inside)}}}"
