@@ -131,6 +131,7 @@ def test_what_a_class_cannot_hold_is_refused() -> None:
     )
 
 
+@pytest.mark.slow
 def test_a_set_that_a_class_cannot_hold_is_refused() -> None:
     few = [requirement(WITHIN, f"R{i}") for i in range(3)]
     assert refuse_joint(few) is None
