@@ -26,7 +26,7 @@ from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.recursion import with_recursion_limit
 
 _MOST_STATEMENT = 32_000
-"""Characters of a statement, which has at most as many bytes; a method has at most 65 535."""
+"""Characters of a statement, which has about as many bytes; a method has at most 65 535."""
 _MOST_FIELDS, _MOST_NAMES = 5_000, 20_000
 """The fields of a class, and all names that it mentions. A file of a class has at most 65 535
 constants, three for each name, and the code of its constructor at most 11 bytes for each field."""
