@@ -131,6 +131,8 @@ class Tongue:
     """What compiles or runs it."""
     told: Callable[[Path, SourceText, FormalizedRequirement, Rows], list[list[c_monitors.Outcome]]]
     """What the text tells at each tick, by another program than that of the verification."""
+    unchanged: str = "$."
+    """The beginning of lines that are not changed."""
 
     def faults(self, text: str) -> Iterator[str]:
         """The text with each mistake at each place, one at a time."""
@@ -138,6 +140,8 @@ class Tongue:
         for old, new in self.edits:
             for match in re.finditer(old, text[start:end]):
                 place = start + match.start()
+                if re.match(self.unchanged, text[text.rindex("\n", 0, place) + 1 :]):
+                    continue
                 yield text[:place] + match.expand(new) + text[place + len(match[0]) :]
 
 
@@ -259,6 +263,6 @@ JAVA = Tongue(
     (*_SHARED, *_BITWISE, (r"!= Truth", "== Truth"), (r"(?<=\? )outcomes", "null"),
      (r"= (\d+|-1);", "= 7;"), (r"advance1", "tell1"),
      (r"(?m)^ +(this|reading)\.\w+ = .*;$", "")),
-    "javac", _told_by_java,
+    "javac", _told_by_java, r" *//",
 )  # fmt: skip
 TONGUES = {each.name: each for each in (C, RUST, JAVA, JAVASCRIPT)}

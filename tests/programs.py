@@ -29,6 +29,7 @@ PROGRAMS = {
     "cargo": "apt-get install cargo",
     "cargo-clippy": "apt-get install rust-clippy",
     "cc": "apt-get install gcc",
+    "checkstyle": "apt-get install checkstyle",
     "chromium": "apt-get install chromium",
     "clang": "apt-get install clang",
     "clang++": "apt-get install clang",

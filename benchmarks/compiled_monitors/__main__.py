@@ -1,9 +1,9 @@
-"""Monitors in C and Rust against Copilot's C and hand-written C: time of a tick, state, code.
+"""Monitors in C, Rust and Java against Copilot's C and hand-written C: time of a tick, state, code.
 
     python -m benchmarks.compiled_monitors [--rounds N]
 
 Programs of one task run in turn, round after round; a figure is the median of its rounds, in CPU
-time. Needs gcc; clang and rustc are used where they are installed.
+time. Needs gcc; clang, rustc and a JDK are used where they are installed.
 """
 
 from __future__ import annotations
@@ -15,8 +15,9 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from benchmarks.compiled_monitors.program import Program
 from benchmarks.compiled_monitors.requirement_files import KINDS, Task, many, single
-from benchmarks.compiled_monitors.variants import Program, variants
+from benchmarks.compiled_monitors.variants import variants
 from benchmarks.figures import RUNS, Figure
 from benchmarks.monitoring import table
 

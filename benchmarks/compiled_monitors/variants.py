@@ -10,24 +10,14 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from benchmarks.compiled_monitors import copilot_files
+from benchmarks.compiled_monitors import copilot_files, java_program
+from benchmarks.compiled_monitors.program import Program
 from benchmarks.compiled_monitors.requirement_files import Demand, Task
 from compiler.targets.c.monitor import TARGET as C
 from compiler.targets.rust.monitor import TARGET as RUST
 from compiler.targets.target import TargetOptions
 
 HERE = Path(__file__).parent
-
-
-@dataclass(frozen=True)
-class Program:
-    """What was built."""
-
-    path: Path
-    code: int
-    """Bytes of the monitor's own machine code and constants."""
-    data: int
-    """Bytes of its static variables."""
 
 
 @dataclass(frozen=True)
@@ -54,6 +44,7 @@ def variants() -> list[Variant]:
         for cc in ("gcc", "clang")
     ]
     found.append(Variant("fretc Rust", "rustc", _rust))
+    found.append(Variant("fretc Java", "javac", java_program.build))
     return [each for each in found if shutil.which(each.compiler) and shutil.which("gcc")]
 
 

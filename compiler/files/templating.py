@@ -45,6 +45,7 @@ def _environment() -> Environment:
         comment=comment,
         c_comment=c_comment,
         c_remark=c_remark,
+        java=java,
         java_comment=java_comment,
         js=script,
         json=to_json,
@@ -110,6 +111,19 @@ def java_comment(text: str, mark: str = "//") -> str:
     Java replaces Unicode escapes before it reads comments, so that one could end the line.
     """
     return comment(text, mark).replace("\\u", "\\ u")
+
+
+def java(text: str) -> str:
+    """The text as a string of Java, in ASCII: its letters and digits, and the codes of others."""
+    units = text.encode("utf-16-be", "surrogatepass")
+    codes = (int.from_bytes(units[i : i + 2], "big") for i in range(0, len(units), 2))
+    return f'"{"".join(map(_java_character, codes))}"'
+
+
+def _java_character(code: int) -> str:
+    """A character by its octal code if it has one: a Unicode escape is read before the string."""
+    is_plain = code < 128 and (chr(code).isalnum() or chr(code) in " -_")
+    return chr(code) if is_plain else f"\\{code:03o}" if code < 128 else f"\\u{code:04x}"
 
 
 def quoted(text: str) -> str:

@@ -46,9 +46,9 @@ from fretish.diagnostics.messages import diagnostic
 @click.option(
     "--emit",
     "emitted",
-    type=click.Choice(("pytest", "csv", "fret", "c", "mcap", "scenario")),
+    type=click.Choice(("pytest", "csv", "fret", "c", "java", "mcap", "scenario")),
     help="Write the tests: `pytest` files, `csv` tables for monitors, traces for FRET's "
-    "simulator, a self-test in `c`, `mcap` logs for audits, or `scenario` files for the "
+    "simulator, a self-test in `c` or `java`, `mcap` logs for audits, or `scenario` files for the "
     "simulated robot.",
 )
 @click.option(

@@ -21,11 +21,12 @@ from compiler.targets.java.printer import JavaPrinter, methods
 from compiler.targets.python.monitor import description, refusal, remark
 from compiler.targets.python.names import module
 from compiler.targets.target import DEFAULT, Target, TargetOptions, not_expressible, stem
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.recursion import with_recursion_limit
 
 _MOST_STATEMENT = 32_000
-"""Characters of a statement, which has at most as many bytes; a method has at most 65 535."""
+"""Characters of a statement, which has about as many bytes; a method has at most 65 535."""
 _MOST_FIELDS, _MOST_NAMES = 5_000, 20_000
 """The fields of a class, and all names that it mentions. A file of a class has at most 65 535
 constants, three for each name, and the code of its constructor at most 11 bytes for each field."""
@@ -83,6 +84,26 @@ def class_name(requirement: FormalizedRequirement) -> str:
     """The name of the class of a requirement's monitor, by which no file system confuses two."""
     name = module(stem(requirement))
     return f"{'' if name[0].isalpha() else '_'}{name[0].upper()}{name[1:]}Monitor"
+
+
+@dataclass(frozen=True, slots=True)
+class Interface:
+    """The names in the interface of one requirement's monitor."""
+
+    class_name: str
+    inputs: tuple[str, ...]
+    """The fields of the inputs, in the order of the propositions that the requirement watches."""
+    outcome: str
+    """The field of the outcomes for the requirement."""
+
+
+def interface(requirements: Sequence[FormalizedRequirement]) -> tuple[Interface, ...]:
+    """The interface of each requirement's monitor, in separate files as `emit` writes them."""
+    printers = ((each, java_printer([each])) for each in requirements)
+    return tuple(
+        Interface(class_name(each), (*printer.names.values(),), printer.program.readings[0].prefix)
+        for each, printer in printers
+    )
 
 
 @with_recursion_limit

@@ -44,7 +44,6 @@ def files(
         monitor=monitor,
         truth=truth,
         numbers=render("java/numbers.java.j2", truth=truth),
-        string=_string,
         **{part: methods([line] for line in lines) for part, lines in _bodies(found).items()},
     )
     return (Artifact(PurePosixPath(f"{name}.java"), text),)
@@ -86,18 +85,6 @@ def _bodies(found: Functions) -> dict[str, list[str]]:
 def _age(nanoseconds: int | None) -> str:
     """The maximum age; -1: its age does not count."""
     return f"{-1 if nanoseconds is None else nanoseconds}L"
-
-
-def _string(text: str) -> str:
-    """The text as a string of Java, in ASCII: its letters and digits, and the codes of others."""
-    units = text.encode("utf-16-be")
-    codes = (int.from_bytes(units[i : i + 2], "big") for i in range(0, len(units), 2))
-    return f'"{"".join(map(_character, codes))}"'
-
-
-def _character(code: int) -> str:
-    is_plain = code < 128 and chr(code).isalnum()
-    return chr(code) if is_plain else f"\\{code:03o}" if code < 128 else f"\\u{code:04x}"
 
 
 def _double(value: float) -> str:

@@ -12,10 +12,11 @@ from compiler.files.artifact import Artifact
 from compiler.files.templating import to_json
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.c import monitor as c
+from compiler.targets.java import monitor as java
 from compiler.targets.python import monitor as emitted
 from fretc.testing.exports import simulator
 from fretc.testing.exports.pytest_file import MonitorLanguage, pytest_file, targets
-from fretc.testing.exports.self_test import self_test
+from fretc.testing.exports.self_test import java_self_test, self_test
 from fretc.testing.exports.tables import TestTable, csv_text, table, ticks
 from fretc.testing.suite import Suite, Test
 
@@ -27,6 +28,7 @@ class SuiteFormat(StrEnum):
     CSV = "csv"
     FRET = "fret"
     C = "c"
+    JAVA = "java"
 
 
 INDEX = "tests.csv"
@@ -72,6 +74,8 @@ def files(
             made = [*_fret(tests, by_id)]
         case SuiteFormat.C:
             made = [*c.emit(tested), self_test(tested, tests)] if tested else []
+        case SuiteFormat.JAVA:
+            made = [*java.emit(tested), java_self_test(tested, tests)] if tested else []
         case _:
             assert_never(form)
     return tuple(made), left
@@ -101,11 +105,12 @@ def _refusal(
             if f"{test.name}.csv" == INDEX:
                 return f"`{INDEX}` is the table of all tests"
             languages = (MonitorLanguage.PYTHON,)
-        case SuiteFormat.PYTEST:
+        case SuiteFormat.PYTEST | SuiteFormat.JAVA:
             pass
         case _:
             assert_never(form)
-    wrong = next(filter(None, (each.refuse(requirement) for each in targets(languages))), None)
+    chosen = [java.TARGET] if form is SuiteFormat.JAVA else targets(languages)
+    wrong = next(filter(None, (each.refuse(requirement) for each in chosen)), None)
     return None if wrong is None else wrong.message
 
 

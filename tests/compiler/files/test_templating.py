@@ -13,6 +13,8 @@ from compiler.files.templating import (
     c_remark,
     comment,
     data,
+    java,
+    java_comment,
     python,
     quoted,
     script,
@@ -98,6 +100,29 @@ def test_no_text_ends_the_comment_that_it_stands_in(text: str) -> None:
         assert is_plain(inner)
         assert not re.search(r"\*/|/\*|\?\?", inner)
     assert re.fullmatch(r"/\* .* \*/", c_remark(text))
+
+
+def read_by_java(text: str) -> str:
+    """What Java makes of a text before its lexer: Unicode escapes become characters (JLS 3.3)."""
+    escape = re.compile(r"(?<!\\)((?:\\\\)*)\\u+([0-9a-fA-F]{4})")
+    return escape.sub(lambda match: match[1] + chr(int(match[2], 16)), text)
+
+
+@hostile
+@example("\\u000a")
+@example("\\\\uu000A x")
+@example("\\u")
+@example('\\u0022 + "')
+@example("\U0001f916 \ud800")
+def test_no_text_ends_the_comment_or_the_string_of_java_that_it_stands_in(text: str) -> None:
+    remark = java_comment(text)
+    assert is_plain(remark)
+    assert "\\u" not in remark
+    written = read_by_java(java(text))
+    inner = re.fullmatch(r'"((?:[^"\\\r\n]|\\[0-7]{3})*)"', written)
+    assert inner is not None
+    told = re.sub(r"\\([0-7]{3})", lambda match: chr(int(match[1], 8)), inner[1])
+    assert told.encode("utf-16-be", "surrogatepass") == text.encode("utf-16-be", "surrogatepass")
 
 
 @hostile

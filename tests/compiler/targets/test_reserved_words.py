@@ -34,7 +34,7 @@ from fretish.keywords import RESERVED
 from tests import c_monitors, java_monitors, node, rust_monitors
 from tests.command import Fretc, write
 from tests.each import each
-from tests.effort import FULL, some
+from tests.effort import FULL, full_only, some
 from tests.emitting import emitted, requirement
 from tests.monitoring import monitor
 from tests.programs import installed, needs, package
@@ -167,7 +167,7 @@ def test_rustc_compiles_it(tmp_path: Path) -> None:
     assert [*map(breaks, told)] == [[len(names)] for names in chunks()]
 
 
-@pytest.mark.slow
+@full_only("javac; test_java_monitor.py has some of the names")
 def test_javac_compiles_it(tmp_path: Path) -> None:
     texts = [java_monitors.monitor(about(names)) for names in chunks()]
     told = java_monitors.outcomes(tmp_path, texts, words())

@@ -163,6 +163,9 @@ def test_the_self_test_stands_beside_the_monitors(fretc: Fretc, folder: Path) ->
     names = {path.name for path in (folder / "build/tests/c").iterdir()}
     monitors = {f"r{i}_monitor.{ending}" for i in (1, 2) for ending in ("c", "h")}
     assert names == monitors | {"fretc_self_test.c"}
+    assert fretc("test", str(folder), "--emit", "java", "--suite", "build/tests/suite.json").out
+    names = {path.name for path in (folder / "build/tests/java").iterdir()}
+    assert names == {"R1Monitor.java", "R2Monitor.java", "FretcSelfTest.java"}
 
 
 @pytest.mark.slow

@@ -220,6 +220,20 @@ public final strictfp class R1Signals {
         return elements(array.length, i -> Number.of(array[i]));
     }
 
+    private static Elements elements(int count, IntFunction<Number> element) {
+        return new Elements() {
+            @Override
+            public int count() {
+                return count;
+            }
+
+            @Override
+            public Number element(int place) {
+                return element.apply(place);
+            }
+        };
+    }
+
     public static Elements unsignedElements(byte[] array) {
         return elements(array.length, i -> Number.of(Byte.toUnsignedLong(array[i])));
     }
@@ -234,20 +248,6 @@ public final strictfp class R1Signals {
 
     public static Elements unsignedElements(long[] array) {
         return elements(array.length, i -> Number.ofUnsigned(array[i]));
-    }
-
-    private static Elements elements(int count, IntFunction<Number> element) {
-        return new Elements() {
-            @Override
-            public int count() {
-                return count;
-            }
-
-            @Override
-            public Number element(int place) {
-                return element.apply(place);
-            }
-        };
     }
 
     private static boolean isKnown(Number x) {

@@ -24,6 +24,7 @@ from tests.emitting import refused
 from tests.java_monitors import compiled, emitted, fields, monitor, outcomes, run, write
 from tests.monitoring import requirement
 
+ROOT = Path(__file__).parents[4]
 WITHIN = "whenever p the sw shall within 100 ticks satisfy q"
 WORDS = (*CLASHES, "Truth", "Inputs", "null", "enum", "var", "yield", "this", "int", "step")
 
@@ -70,6 +71,16 @@ def test_no_name_and_no_text_changes_the_code(tmp_path: Path) -> None:
     assert "\\u" not in text
     assert text.isascii()
     assert not re.search(r"^\s*public int injected", text, re.M)
+    assert compiled(tmp_path) == ""
+
+
+@pytest.mark.slow
+def test_the_example_of_the_documentation_compiles(tmp_path: Path) -> None:
+    page = ROOT.joinpath("docs/targets.md").read_text("utf-8")
+    section = page.partition("## `--emit java`\n")[2].partition("\n## ")[0]
+    [example] = re.findall(r"^    final class Brake \{(?:.*\n(?=    |\n))+", section, re.MULTILINE)
+    sentence = "whenever too_close sw shall eventually satisfy stopped"
+    write(tmp_path, {**emitted(requirement(sentence)), "Brake.java": example})
     assert compiled(tmp_path) == ""
 
 
@@ -131,6 +142,7 @@ def test_what_a_class_cannot_hold_is_refused() -> None:
     )
 
 
+@pytest.mark.slow
 def test_a_set_that_a_class_cannot_hold_is_refused() -> None:
     few = [requirement(WITHIN, f"R{i}") for i in range(3)]
     assert refuse_joint(few) is None

@@ -56,7 +56,9 @@ def checker(tongue: Tongue, tmp_path_factory: pytest.TempPathFactory) -> Checker
     return Checker(tongue.language, tmp_path_factory.mktemp(tongue.name))
 
 
-CASES = [*product(("c", "rust"), RINGED)] if FULL else [("c", RINGED[0]), ("rust", RINGED[2])]
+CASES = (
+    [*product(("c", "rust", "java"), RINGED)] if FULL else [("c", RINGED[0]), ("rust", RINGED[2])]
+)
 
 
 @pytest.mark.slow
@@ -75,7 +77,7 @@ def test_both_ways_prove_what_fretc_writes(tongue: Tongue, checker: Checker, sen
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("tongue", some(["c", "rust"], 2), indirect=True)
+@pytest.mark.parametrize("tongue", some(["c", "rust", "java"], 3), indirect=True)
 def test_a_line_of_another_kind_proves_nothing(tongue: Tongue, checker: Checker) -> None:
     """A library whose lines are no such lines is compared with all of their bits."""
     one = requirement(RINGED[0], "R1")
