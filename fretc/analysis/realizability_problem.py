@@ -215,6 +215,12 @@ class RealizabilityProblem:
             if uncertain.isdisjoint(_atoms(requirement))
         )
 
+    def computes(self, ids: Iterable[str]) -> bool:
+        """Whether numbers satisfy the atoms of some requirements and of the assumptions."""
+        wanted, unknown = set(ids), self.arena.alphabet.not_computed
+        near = [each for each in self.requirements if each.id in wanted]
+        return all(unknown.isdisjoint(_atoms(each)) for each in (*near, *self.assumptions))
+
     @property
     def parts(self) -> Iterator[tuple[FormalizedRequirement, ...]]:
         """Some of the requirements that may be decided where the whole problem is not."""
@@ -325,7 +331,8 @@ def _built(
         if (missing := missing_role(assumption, roles)) is not None:
             raise UnsupportedError(f"of the assumption {assumption.id}: `{missing}` has no role")
     counted = [requirement for requirement in requirements if requirement.id not in beyond]
-    alphabet = alphabet_of([*counted, *near], roles, fresh, favoured, budget, steps)
+    every = [*counted, *near]
+    alphabet = alphabet_of(every, roles, fresh, favoured, budget, steps, functions=True)
     built = arena(counted, near, alphabet, fresh, as_fret=as_fret, beyond=beyond)
     return RealizabilityProblem(
         tuple(requirements), tuple(near), built, roles, as_fret, favoured, steps, fresh
@@ -355,6 +362,7 @@ def alphabet_of(
     steps: int = 0,
     *,
     of_moments: bool = False,
+    functions: bool = False,
 ) -> Alphabet:
     """The alphabet of some requirements; with numbers, z3 is imported.
 
@@ -366,9 +374,19 @@ def alphabet_of(
         budget: time limit for solving comparisons.
         steps: number of ticks before a bound for which its reachability is stored.
         of_moments: whether propositions over several samples are treated as free.
+        functions: whether a term over inputs that is not linear may have any value.
     """
     if not any(map(_has_numbers, requirements)):
         return Propositions(requirements, roles, fresh)
     from fretc.analysis.arithmetic.alphabet import Cells
 
-    return Cells(requirements, roles, fresh, favoured, budget, steps, of_moments=of_moments)
+    return Cells(
+        requirements,
+        roles,
+        fresh,
+        favoured,
+        budget,
+        steps,
+        of_moments=of_moments,
+        functions=functions,
+    )

@@ -150,6 +150,7 @@ def _unrolled(
         for name in requirement.variables
     ]
     is_certain = setting.left_out is None and setting.of_outputs is None
+    is_certain = is_certain and setting.computes(each.id for each in setting.requirements)
     if not is_certain or setting.assumptions or Role.INPUT in chosen:
         return None
     found = lasso(setting.requirements, setting.roles, budget, as_fret=setting.as_fret)
@@ -392,6 +393,8 @@ def _conflict(whole: RealizabilityProblem, members: Sequence[str], budget: Budge
     assert lost, f"the play of {', '.join(ids)} breaks none of them"
     assert not broken(setting.assumptions, alphabet, play), "the environment keeps its word"
     why = because(requirements, counters, game, play)
+    if not setting.computes(ids):
+        return Conflict(tuple(ids), (), f"{why}, {_WHATEVER}")
     if play.ticks > _LONGEST:
         return Conflict(tuple(ids), (), why)
     return Conflict(tuple(ids), setting.ticks(ids, play.runs, play.numbers), why, play.loop)

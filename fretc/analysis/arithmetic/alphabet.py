@@ -38,6 +38,8 @@ class Cells:
         budget: time limit for solving the comparisons.
         steps: number of ticks before a bound for which its reachability is stored.
         of_moments: whether propositions over several samples are left to `Propositions`.
+        functions: whether a term over inputs that is not linear may have any value; the favoured
+            player chooses it.
 
     Raises:
         OutOfTimeError: the budget is exceeded.
@@ -53,9 +55,11 @@ class Cells:
         steps: int = 0,
         *,
         of_moments: bool = False,
+        functions: bool = False,
     ) -> None:
         self._favoured = favoured
-        self._atoms = Atoms(requirements, of_moments=of_moments)
+        given = [name for name, role in roles.items() if role is Role.INPUT] if functions else ()
+        self._atoms = Atoms(requirements, of_moments=of_moments, given=given)
         self._pairs = remembered(self._atoms, steps)
         self._fresh = fresh
         self._kept = Memory(fresh, {})
@@ -176,7 +180,7 @@ class Cells:
     @property
     def certain(self) -> Function:
         """Patterns without unknown values; patterns of earlier numbers are never certain."""
-        if self._atoms.before:
+        if self._atoms.before or self._atoms.free:
             return bdd.false()
         function = self._plain.certain
         for each in self._used:
@@ -191,11 +195,22 @@ class Cells:
         return bool(self._atoms.before)
 
     @property
+    def not_computed(self) -> frozenset[str]:
+        """Atoms with a term that is not linear."""
+        atoms = self._atoms.found.items()
+        return frozenset(
+            name for name, atom in atoms if not atom.reads.isdisjoint(self._atoms.free)
+        )
+
+    @property
     def open(self) -> str | None:
         """What the favoured player chooses although no player does; None: nothing."""
         before = next(iter(self._atoms.before), None)
         if before is not None:
             return f"of the previous value `{before}` only the truth of its comparisons is kept"
+        free = min(self._atoms.free, default=None)
+        if free is not None:
+            return f"`{free}` is not computed, and may have any value"
         unknown = next((why for each in self._used if (why := each.open) is not None), None)
         if unknown is not None:
             return unknown
@@ -222,7 +237,8 @@ class Cells:
         names = set(self._plain.uncertain_atoms(role))
         if role is self._favoured:
             atoms = self._atoms.found.items()
-            names |= {name for name, atom in atoms if atom.reads & self._atoms.before.keys()}
+            open_ = self._atoms.before.keys() | self._atoms.free
+            names |= {name for name, atom in atoms if atom.reads & open_}
             names |= {name for name, group in self._of.items() if group.open is not None}
             names |= self._lasting.keys()
         return frozenset(names)

@@ -44,15 +44,22 @@ class Atoms:
     """Linear atoms of some requirements, by their names in formulas."""
 
     def __init__(
-        self, requirements: Sequence[FormalizedRequirement], *, of_moments: bool = False
+        self,
+        requirements: Sequence[FormalizedRequirement],
+        *,
+        of_moments: bool = False,
+        given: Collection[str] = (),
     ) -> None:
         """Collect the atoms.
 
         Args:
             requirements: the requirements.
             of_moments: whether only atoms of one known sample are read.
+            given: variables that are known before the system chooses. A term over these and earlier
+                numbers that is not linear may have any value.
         """
-        self._terms = RequirementTerms(requirements)
+        self._given = frozenset(given)
+        self._terms = RequirementTerms(requirements, may_be_free=self._is_given)
         self.found: dict[str, NumericAtom] = {}
         self.refused: dict[str, str] = {}
         """Comparison → why it has no formula here."""
@@ -79,6 +86,15 @@ class Atoms:
     def before(self) -> Mapping[str, PreviousValue]:
         """Variables for numbers of the previous tick → the names of these numbers."""
         return self._terms.before
+
+    @property
+    def free(self) -> Collection[str]:
+        """Variables for terms that may have any value."""
+        return self._terms.free
+
+    def _is_given(self, names: frozenset[str]) -> bool:
+        known = self._given | self._terms.before.keys() | self._terms.free
+        return bool(self._given) and names <= known
 
     @property
     def is_of_moments(self) -> bool:
