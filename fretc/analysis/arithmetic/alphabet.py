@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 import z3
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.numbers.terms import Term
+from compiler.formalization.numbers.terms import Term, read_by
 from compiler.logic.diagrams import decision_diagrams as bdd
 from compiler.logic.diagrams.decision_diagrams import Function
 from fretc.analysis.arena.alphabet import Tick
@@ -57,7 +57,7 @@ class Cells:
         of_moments: bool = False,
         functions: bool = False,
     ) -> None:
-        self._favoured = favoured
+        self._favoured, self._roles = favoured, roles
         given = [name for name, role in roles.items() if role is Role.INPUT] if functions else ()
         self._atoms = Atoms(requirements, of_moments=of_moments, given=given)
         self._pairs = remembered(self._atoms, steps)
@@ -220,10 +220,32 @@ class Cells:
         return None
 
     @property
+    def is_approximate(self) -> bool:
+        """Whether truth values are free that numbers decide, besides those in `open`."""
+        return bool(self._plain.uncertainties)
+
+    @property
+    def _begun_by_outputs(self) -> frozenset[str]:
+        """Earlier numbers whose value at the first tick depends on outputs of that tick.
+
+        A favoured environment states them before the system chooses, and so too early.
+        """
+        if self._favoured is Role.OUTPUT:
+            return frozenset()
+        return frozenset(
+            name
+            for name, before in self._atoms.before.items()
+            if any(self._roles.get(each) is not Role.INPUT for each in read_by(before.first))
+        )
+
+    @property
     def uncertainties(self) -> Mapping[Role, str]:
         """Reasons for atoms outside the groups, and the reasons in `open`."""
+        begun = min(self._begun_by_outputs, default=None)
+        why = f"the first value of `{begun}` depends on what the system chooses then"
         return {
             **({} if self.open is None else {self._favoured: self.open}),
+            **({} if begun is None else {Role.OUTPUT: why}),
             **self._plain.uncertainties,
         }
 
@@ -241,6 +263,8 @@ class Cells:
             names |= {name for name, atom in atoms if atom.reads & open_}
             names |= {name for name, group in self._of.items() if group.open is not None}
             names |= self._lasting.keys()
+        if role is Role.OUTPUT and (begun := self._begun_by_outputs):
+            names |= {name for name, atom in self._atoms.found.items() if atom.reads & begun}
         return frozenset(names)
 
     def memory(self) -> RequirementCounter | None:
