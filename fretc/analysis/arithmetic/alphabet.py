@@ -38,8 +38,9 @@ class Cells:
         budget: time limit for solving the comparisons.
         steps: number of ticks before a bound for which its reachability is stored.
         of_moments: whether propositions over several samples are left to `Propositions`.
-        functions: whether a term over inputs that is not linear may have any value; the favoured
-            player chooses it.
+        functions: whether a term over inputs that is not linear may have any value, which the
+            favoured player chooses, and whether the first tick is told apart if a number begins
+            with outputs of that tick.
 
     Raises:
         OutOfTimeError: the budget is exceeded.
@@ -57,9 +58,10 @@ class Cells:
         of_moments: bool = False,
         functions: bool = False,
     ) -> None:
-        self._favoured, self._roles = favoured, roles
+        self._favoured, self._roles, self._functions = favoured, roles, functions
         given = [name for name, role in roles.items() if role is Role.INPUT] if functions else ()
         self._atoms = Atoms(requirements, of_moments=of_moments, given=given)
+        self._at_first = self._atoms.begin_apart(self._begun_by_outputs)
         self._pairs = remembered(self._atoms, steps)
         self._fresh = fresh
         self._kept = Memory(fresh, {})
@@ -105,7 +107,15 @@ class Cells:
         if atom is not None and (z3.is_true(atom.formula) or z3.is_false(atom.formula)):
             return bdd.true() if z3.is_true(atom.formula) else bdd.false()
         group = self._of.get(name)
-        return self._plain.atom(name) if group is None else group.atom(name)
+        value = self._plain.atom(name) if group is None else group.atom(name)
+        if name not in self._at_first:
+            return value
+        return bdd.ite(self._begun, value, self._atom(self._at_first[name]))
+
+    @property
+    def _begun(self) -> Function:
+        """Whether the first tick is over."""
+        return self._kept.keep(bdd.true())
 
     def _in_time(self, name: str) -> Function:
         """Function of a proposition that depends on earlier ticks, also over their memory."""
@@ -228,9 +238,9 @@ class Cells:
     def _begun_by_outputs(self) -> frozenset[str]:
         """Earlier numbers whose value at the first tick depends on outputs of that tick.
 
-        A favoured environment states them before the system chooses, and so too early.
+        A favoured environment would state them before the system chooses, and so too early.
         """
-        if self._favoured is Role.OUTPUT:
+        if not self._functions:
             return frozenset()
         return frozenset(
             name
@@ -241,11 +251,8 @@ class Cells:
     @property
     def uncertainties(self) -> Mapping[Role, str]:
         """Reasons for atoms outside the groups, and the reasons in `open`."""
-        begun = min(self._begun_by_outputs, default=None)
-        why = f"the first value of `{begun}` depends on what the system chooses then"
         return {
             **({} if self.open is None else {self._favoured: self.open}),
-            **({} if begun is None else {Role.OUTPUT: why}),
             **self._plain.uncertainties,
         }
 
@@ -263,15 +270,14 @@ class Cells:
             names |= {name for name, atom in atoms if atom.reads & open_}
             names |= {name for name, group in self._of.items() if group.open is not None}
             names |= self._lasting.keys()
-        if role is Role.OUTPUT and (begun := self._begun_by_outputs):
-            names |= {name for name, atom in self._atoms.found.items() if atom.reads & begun}
         return frozenset(names)
 
     def memory(self) -> RequirementCounter | None:
         """Stored facts about earlier ticks, which the player of the numbers must respect."""
         pairs = [pair for pair in self._pairs if pair.now in self._of and pair.then in self._of]
         agrees = self._agreement(pairs) if pairs else bdd.true()
-        bits = self._kept.needed([agrees, *(each.is_so for each in self._lasted.values())])
+        begun = [self._begun] if self._at_first else []
+        bits = self._kept.needed([agrees, *begun, *(each.is_so for each in self._lasted.values())])
         if not bits:
             return None
         steps = tuple(self._kept.steps[bit] for bit in bits)
@@ -287,7 +293,7 @@ class Cells:
         mine = {bit for function in then for bit in bdd.support(function)}
         others = [bit for bit in bdd.support(self.possible) if bit not in mine]
         agrees = bdd.exists(self.possible, bdd.cube(others))
-        begun = self._kept.keep(bdd.true())
+        begun = self._begun
         for pair, now in zip(pairs, then, strict=True):
             was = self._kept.keep(self.atom(pair.now))
             first = {True: now, False: -now, None: bdd.true()}[pair.first]

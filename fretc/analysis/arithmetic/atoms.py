@@ -92,6 +92,28 @@ class Atoms:
         """Variables for terms that may have any value."""
         return self._terms.free
 
+    def begin_apart(self, begun: Collection[str]) -> Mapping[str, str]:
+        """Add an atom for the first tick of each atom that reads some earlier numbers.
+
+        Args:
+            begun: variables for numbers of the previous tick.
+
+        Returns:
+            Atom → the atom that has its value at the first tick.
+        """
+        variables = self.variables
+        firsts = [(variables[name], self.before[name].first) for name in begun]
+        apart = {
+            name: f"{name} at first"
+            for name, atom in self.found.items()
+            if not atom.reads.isdisjoint(begun)
+        }
+        for name, at_first in apart.items():
+            over = self.found[name].over
+            term = z3.simplify(z3.substitute(over.formula, *firsts))
+            self.found[at_first] = NumericAtom(AtomOfTick(term, over.given), read_by(term))
+        return apart
+
     def _is_given(self, names: frozenset[str]) -> bool:
         known = self._given | self._terms.before.keys() | self._terms.free
         return bool(self._given) and names <= known
