@@ -39,8 +39,8 @@ class Cells:
         steps: number of ticks before a bound for which its reachability is stored.
         of_moments: whether propositions over several samples are left to `Propositions`.
         functions: whether a term over inputs that is not linear may have any value, which the
-            favoured player chooses, and whether the first tick has atoms of its own if a number begins
-            with outputs of that tick.
+            favoured player chooses, and whether the first tick has atoms of its own where a number
+            begins with outputs of that tick.
 
     Raises:
         OutOfTimeError: the budget is exceeded.
