@@ -19,7 +19,7 @@ from fretc.analysis.arena.product import Arena, arena
 from fretc.analysis.arena.propositions import Propositions
 from fretc.analysis.arena.roles import Roles, missing_role
 from fretc.analysis.arena.variables import Numbers, UnsupportedError, numbers
-from fretc.analysis.components import about, parts
+from fretc.analysis.components import about, parts, tokens
 from fretc.analysis.games.game import Game, upheld
 from fretc.analysis.games.game_traces import Run
 from fretc.analysis.games.replay import remembering
@@ -234,13 +234,20 @@ class RealizabilityProblem:
     ) -> RealizabilityProblem:
         """The problem of some of the requirements, with an alphabet of their own.
 
+        It keeps the assumptions that concern them, and those that the system can affect: it may
+        win by outputs after which the environment cannot keep them.
+
         Raises:
             UnsupportedError: an assumption has no counter.
             OutOfTimeError: solving their comparisons takes longer than the budget.
         """
-        return stage(
-            requirements, self.assumptions, self.roles, as_fret=self.as_fret, budget=budget
-        )
+        near = about(requirements, self.assumptions, self.roles)
+        kept = [
+            each
+            for each in self.assumptions
+            if each in near or tokens(each, self.roles, Role.OUTPUT)
+        ]
+        return _built(requirements, kept, self.roles, numbers(), budget, as_fret=self.as_fret)
 
     @property
     def of_inputs(self) -> str | None:
