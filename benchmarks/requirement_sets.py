@@ -1,16 +1,22 @@
 """Can a set be kept: our game against Spot's synthesis from formulas, and sets that are hard.
 
 Each line is printed with OxiDD and with BuDDy; `--one` measures the engine of `FRETC_DIAGRAMS`.
+`--exports FILE...` analyzes FRET's exports as their users do, without an edit.
 """
 
 from __future__ import annotations
 
+import json
 import os
+import resource
 import statistics
 import subprocess
 import sys
+import tempfile
 import time
+from collections import Counter
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 
 import spot
 
@@ -151,6 +157,35 @@ def show(what: str, sentences: Sequence[str], named: Roles) -> None:
     print(f"{what}: {'realizable' if verdict else 'unrealizable'}, {seconds:.2f} s", flush=True)
 
 
+def exports(files: Sequence[str]) -> None:
+    """Each file of FRET, imported and analyzed by the commands: verdicts, conflicts, CPU time."""
+    command = [sys.executable, "-c", "from fretc.cli import main; main()"]
+    for file in files:
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run(
+                [*command, "import", file, "-o", f"{folder}/set"], check=True, capture_output=True
+            )
+            before = resource.getrusage(resource.RUSAGE_CHILDREN)
+            run = subprocess.run(
+                [*command, "analyze", f"{folder}/set", "--format", "json"],
+                cwd=folder,
+                capture_output=True,
+                check=False,
+                text=True,
+            )
+            after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+        found = json.loads(run.stdout)
+        verdicts = Counter(each["verdict"] for each in found["components"])
+        count = sum(len(each["requirements"]) for each in found["components"])
+        shown = ", ".join(f"{number} {verdict}" for verdict, number in sorted(verdicts.items()))
+        print(
+            f"{Path(file).stem}, {count}: {shown}; {len(found['conflicts'])} conflicts, "
+            f"{seconds:.1f} s",
+            flush=True,
+        )
+
+
 def beside() -> None:
     """All of it with each engine of decision diagrams, line by line beside each other."""
     outputs = [
@@ -169,7 +204,9 @@ def beside() -> None:
 
 
 if __name__ == "__main__":
-    if "--one" in sys.argv:
+    if "--exports" in sys.argv:
+        exports(sys.argv[sys.argv.index("--exports") + 1 :])
+    elif "--one" in sys.argv:
         against_spot()
         hard()
         pump()

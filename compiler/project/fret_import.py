@@ -164,6 +164,11 @@ def _requirements(
         diagnostics.extend(_unread(id, quoted))
 
 
+def is_assumption(reqid: str) -> bool:
+    """Whether FRET reads a requirement with this id as an assumption."""
+    return ASSUMPTION in reqid.lower()
+
+
 def _unfenced(text: str) -> str:
     """The text with each line `+++` indented, so that it does not begin a header."""
     return re.sub(r"^\ufeff?(?=\+\+\+)", " ", text, flags=re.MULTILINE)
@@ -211,7 +216,7 @@ def _header(
     )
     header: dict[str, Any] = {
         "id": id,
-        "kind": ASSUMPTION if ASSUMPTION in text_of(record.get("reqid")).lower() else "",
+        "kind": ASSUMPTION if is_assumption(text_of(record.get("reqid"))) else "",
         **own_texts,
         "parents": parents,
         "rationale": text_of(record.get("rationale")),

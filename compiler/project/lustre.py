@@ -2,7 +2,8 @@
 
 Only expressions with a certainly equal meaning are converted; other Lustre (`if`, `div`, `pre`
 without a first value) stays text. `0.0 -> pre x`, with a literal that shows the type, is
-`preReal(0.0, x)`. Source: Lustre V6 reference manual, expressions and their precedences.
+`preReal(0.0, x)`; `0.0 -> (x - pre x) * 2.0` is `(x - preReal(x, x)) * 2.0`, which is 0 at the
+first tick. Source: Lustre V6 reference manual, expressions and their precedences.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ def fretish(text: str) -> e.Expression | None:
     """The assignment in FRETish; None if that is not certain."""
     if len(text) > _MOST:
         return None
-    lexemes = _delayed(_lexemes(text) or [])
+    lexemes = _delayed(_differences(_lexemes(text) or []))
     if not lexemes or {"->", "pre"} & {*lexemes} or not _is_clear(lexemes):
         return None
     words = " ".join(_WORDS.get(word, _SIGNS.get(word, word)) for word in lexemes)
@@ -59,6 +60,29 @@ def _lexemes(text: str) -> list[str] | None:
         lexemes.append(match[0].strip())
         index = match.end()
     return lexemes
+
+
+def _differences(lexemes: list[str]) -> list[str]:
+    """The tokens with `(x - preReal(x, x))` for `0.0 -> (x - pre x)`, also times a number.
+
+    Only where nothing else is in the assignment: its first value is 0, and so is the difference of
+    a number and itself.
+    """
+    match lexemes:
+        case [zero, "->", "(", name, "-", "pre", other, ")", *rest]:
+            pass
+        case [zero, "->", name, "-", "pre", other, *rest]:
+            pass
+        case _:
+            return lexemes
+    scaled = not rest or (rest[0] in ("*", "/") and len(rest) == 2 and rest[1][0].isdigit())
+    is_scaled = bool(rest) and lexemes[2] != "("
+    is_name = name == other and re.fullmatch(r"[A-Za-z_]\w*", name) and name not in _WORDS
+    if not re.fullmatch(r"0+(\.0*)?", zero) or not scaled or is_scaled or not is_name:
+        return lexemes
+    if rest and rest[0] == "/" and not re.search(r"[1-9]", rest[1]):
+        return lexemes
+    return ["(", name, "-", _function([zero]), "(", name, ",", name, ")", ")", *rest]
 
 
 def _delayed(lexemes: list[str]) -> list[str]:

@@ -15,7 +15,7 @@ from compiler.formalization.formalize import formalize
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import printing
 from compiler.logic.spelling.reserved_words import FRET
-from compiler.project.fret_import import STATUSES
+from compiler.project.fret_import import STATUSES, is_assumption
 from compiler.project.fret_variables import OWN, assignment_field, unquoted
 from compiler.project.lustre import fretish, lustre
 from compiler.targets.target import DEFAULT, Target, TargetOptions, not_expressible
@@ -28,7 +28,7 @@ from fretish.checking import conditions, has_units
 from fretish.clock import SYMBOLS, duration_text
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source, Span
-from fretish.documents import RequirementEntry
+from fretish.documents import ASSUMPTION, RequirementEntry
 from fretish.keywords import RESERVED
 from fretish.meaning import meaning
 from fretish.parser import parse
@@ -57,7 +57,13 @@ def emit(
 
 
 def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
-    """F601: FRET has no units and converts nothing."""
+    """F601: FRET has no units and converts nothing, and reads the kind in the id."""
+    entry = requirement.entry
+    if entry.is_assumption is not is_assumption(entry.fret.get("reqid", entry.id)):
+        kind = "an assumption without" if entry.is_assumption else "a requirement with"
+        return not_expressible(
+            "FRET", requirement, f"{kind} `{ASSUMPTION}` in its id", "change its `id` or its `kind`"
+        )
     if _mixes_units(requirement):
         return not_expressible(
             "FRET",

@@ -19,7 +19,7 @@ from fretc.analysis.arena.product import Arena, arena
 from fretc.analysis.arena.propositions import Propositions
 from fretc.analysis.arena.roles import Roles, missing_role
 from fretc.analysis.arena.variables import Numbers, UnsupportedError, numbers
-from fretc.analysis.components import about, parts
+from fretc.analysis.components import about, parts, tokens
 from fretc.analysis.games.game import Game, upheld
 from fretc.analysis.games.game_traces import Run
 from fretc.analysis.games.replay import remembering
@@ -215,6 +215,12 @@ class RealizabilityProblem:
             if uncertain.isdisjoint(_atoms(requirement))
         )
 
+    def computes(self, ids: Iterable[str]) -> bool:
+        """Whether numbers satisfy the atoms of some requirements and of the assumptions."""
+        wanted, unknown = set(ids), self.arena.alphabet.not_computed
+        near = [each for each in self.requirements if each.id in wanted]
+        return all(unknown.isdisjoint(_atoms(each)) for each in (*near, *self.assumptions))
+
     @property
     def parts(self) -> Iterator[tuple[FormalizedRequirement, ...]]:
         """Some of the requirements that may be decided where the whole problem is not."""
@@ -228,13 +234,20 @@ class RealizabilityProblem:
     ) -> RealizabilityProblem:
         """The problem of some of the requirements, with an alphabet of their own.
 
+        It keeps the assumptions that concern them, and those that the system can affect: it may
+        win by outputs after which the environment cannot keep them.
+
         Raises:
             UnsupportedError: an assumption has no counter.
             OutOfTimeError: solving their comparisons takes longer than the budget.
         """
-        return stage(
-            requirements, self.assumptions, self.roles, as_fret=self.as_fret, budget=budget
-        )
+        near = about(requirements, self.assumptions, self.roles)
+        kept = [
+            each
+            for each in self.assumptions
+            if each in near or tokens(each, self.roles, Role.OUTPUT)
+        ]
+        return _built(requirements, kept, self.roles, numbers(), budget, as_fret=self.as_fret)
 
     @property
     def of_inputs(self) -> str | None:
@@ -325,7 +338,8 @@ def _built(
         if (missing := missing_role(assumption, roles)) is not None:
             raise UnsupportedError(f"of the assumption {assumption.id}: `{missing}` has no role")
     counted = [requirement for requirement in requirements if requirement.id not in beyond]
-    alphabet = alphabet_of([*counted, *near], roles, fresh, favoured, budget, steps)
+    every = [*counted, *near]
+    alphabet = alphabet_of(every, roles, fresh, favoured, budget, steps, functions=True)
     built = arena(counted, near, alphabet, fresh, as_fret=as_fret, beyond=beyond)
     return RealizabilityProblem(
         tuple(requirements), tuple(near), built, roles, as_fret, favoured, steps, fresh
@@ -355,6 +369,7 @@ def alphabet_of(
     steps: int = 0,
     *,
     of_moments: bool = False,
+    functions: bool = False,
 ) -> Alphabet:
     """The alphabet of some requirements; with numbers, z3 is imported.
 
@@ -366,9 +381,19 @@ def alphabet_of(
         budget: time limit for solving comparisons.
         steps: number of ticks before a bound for which its reachability is stored.
         of_moments: whether propositions over several samples are treated as free.
+        functions: whether a term over inputs that is not linear may have any value.
     """
     if not any(map(_has_numbers, requirements)):
         return Propositions(requirements, roles, fresh)
     from fretc.analysis.arithmetic.alphabet import Cells
 
-    return Cells(requirements, roles, fresh, favoured, budget, steps, of_moments=of_moments)
+    return Cells(
+        requirements,
+        roles,
+        fresh,
+        favoured,
+        budget,
+        steps,
+        of_moments=of_moments,
+        functions=functions,
+    )

@@ -119,6 +119,9 @@ def _verdict(setting: RealizabilityProblem, budget: Budget) -> tuple[Realizabili
         uncertainty = setting.left_out or setting.of_outputs
         if uncertainty is None:
             return RealizabilityVerdict.REALIZABLE, "the system has a strategy"
+        answer = _unrolled(setting, budget)
+        if answer is not None:
+            return answer
     else:
         uncertainty = setting.of_inputs
         if uncertainty is None:
@@ -149,8 +152,7 @@ def _unrolled(
         for requirement in setting.requirements
         for name in requirement.variables
     ]
-    is_certain = setting.left_out is None and setting.of_outputs is None
-    if not is_certain or setting.assumptions or Role.INPUT in chosen:
+    if setting.left_out or setting.assumptions or Role.INPUT in chosen:
         return None
     found = lasso(setting.requirements, setting.roles, budget, as_fret=setting.as_fret)
     if found is None:
@@ -392,6 +394,8 @@ def _conflict(whole: RealizabilityProblem, members: Sequence[str], budget: Budge
     assert lost, f"the play of {', '.join(ids)} breaks none of them"
     assert not broken(setting.assumptions, alphabet, play), "the environment keeps its word"
     why = because(requirements, counters, game, play)
+    if not setting.computes(ids):
+        return Conflict(tuple(ids), (), f"{why}, {_WHATEVER}")
     if play.ticks > _LONGEST:
         return Conflict(tuple(ids), (), why)
     return Conflict(tuple(ids), setting.ticks(ids, play.runs, play.numbers), why, play.loop)

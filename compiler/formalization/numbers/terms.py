@@ -16,6 +16,7 @@ from fretish import expressions as e
 from fretish import units
 from fretish.bindings import constants
 from fretish.bindings.types import Kind, kind
+from fretish.checking import LOOK_AHEAD, LOOK_BACK, NUMBERS_BACK
 from fretish.classes.frozen import dataclass
 from fretish.printer import expression as printed
 from fretish.reading.recursion import with_recursion_limit
@@ -41,7 +42,11 @@ class RequirementTerms:
     """The variables of some requirements, and formulas over them."""
 
     def __init__(
-        self, requirements: Sequence[FormalizedRequirement], *, is_linear: bool = True
+        self,
+        requirements: Sequence[FormalizedRequirement],
+        *,
+        is_linear: bool = True,
+        may_be_free: Callable[[frozenset[str]], bool] = lambda names: False,
     ) -> None:
         """Start without variables.
 
@@ -49,7 +54,10 @@ class RequirementTerms:
             requirements: the requirements with the comparisons.
             is_linear: whether products of variables are refused, and unitless signals that meet a
                 signal with a unit. Otherwise such a signal gets a separate variable in base units.
+            may_be_free: whether a term over these variables that is not linear becomes a variable
+                with any value; not for signals.
         """
+        self._may_be_free = may_be_free
         self._is_linear = is_linear
         self._signals = {
             name: signal
@@ -68,6 +76,8 @@ class RequirementTerms:
         """z3 constants of all variables."""
         self.before: dict[str, PreviousValue] = {}
         """The variables that stand for values at the tick before."""
+        self.free: set[str] = set()
+        """The variables that stand for terms with any value: equal terms have equal values."""
 
     @with_recursion_limit
     def holds(self, part: e.Expression, value: bool, all_known: Callable[[Term], Term]) -> Term:
@@ -170,13 +180,33 @@ class RequirementTerms:
             case e.Negation(arg):
                 return -read(arg)
             case e.Arithmetic(op, left, right):
-                return _computed(op, read(left), read(right), is_linear=self._is_linear)
+                sides = [read(left), read(right)]
+                try:
+                    return _computed(op, *sides, is_linear=self._is_linear)
+                except NoTermError as error:
+                    return self._with_any_value(part, sides, error)
             case e.Call("preInt" | "preReal", (first, e.Name(id))) if not is_base:
                 return self._before(printed(part), read(first), id)
             case e.Call(name, args):
-                return _called(name, [read(operand) for operand in args])
+                operands = [read(operand) for operand in args]
+                try:
+                    return _called(name, operands)
+                except NoTermError as error:
+                    return self._with_any_value(part, operands, error)
             case _:
                 raise NoTermError("is not a comparison of numbers")
+
+    def _with_any_value(
+        self, part: e.Expression, operands: Sequence[Term], why: NoTermError
+    ) -> Term:
+        """The variable for a term that is not linear."""
+        names = frozenset[str]().union(*map(read_by, operands))
+        temporal = isinstance(part, e.Call) and part.name in LOOK_BACK | LOOK_AHEAD | NUMBERS_BACK
+        if self._signals or temporal or not self._may_be_free(names):
+            raise why
+        name = printed(part)
+        self.free.add(name)
+        return self.variables.setdefault(name, z3.Real(name))
 
     def _before(self, name: str, first: Term, of: str) -> Term:
         """The variable for the value at the tick before."""

@@ -85,6 +85,10 @@ class Alphabet(Protocol):
         """Whether more about earlier numbers could be stored."""
 
     @property
+    def not_computed(self) -> frozenset[str]:
+        """Atoms that read a term with any value: numbers of a trace do not satisfy them."""
+
+    @property
     def open(self) -> str | None:
         """What the favoured player chooses although no player does; None: nothing."""
 

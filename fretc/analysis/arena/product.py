@@ -48,6 +48,7 @@ class Fixed:
         self.uncertainties, self.labels = alphabet.uncertainties, alphabet.labels
         self.uncertain_atoms, self.open = alphabet.uncertain_atoms, alphabet.open
         self.is_refinable = alphabet.is_refinable
+        self.not_computed = alphabet.not_computed
         self.memory = lambda: memory
 
 

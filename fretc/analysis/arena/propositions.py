@@ -76,6 +76,11 @@ class Propositions:
         return False
 
     @property
+    def not_computed(self) -> frozenset[str]:
+        """No atom."""
+        return frozenset()
+
+    @property
     def open(self) -> None:
         """None: nothing is left to a favoured player."""
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 import z3
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.numbers.terms import Term
+from compiler.formalization.numbers.terms import Term, read_by
 from compiler.logic.diagrams import decision_diagrams as bdd
 from compiler.logic.diagrams.decision_diagrams import Function
 from fretc.analysis.arena.alphabet import Tick
@@ -38,6 +38,9 @@ class Cells:
         budget: time limit for solving the comparisons.
         steps: number of ticks before a bound for which its reachability is stored.
         of_moments: whether propositions over several samples are left to `Propositions`.
+        functions: whether a term over inputs that is not linear may have any value, which the
+            favoured player chooses, and whether the first tick has atoms of its own where a number
+            begins with outputs of that tick.
 
     Raises:
         OutOfTimeError: the budget is exceeded.
@@ -53,9 +56,12 @@ class Cells:
         steps: int = 0,
         *,
         of_moments: bool = False,
+        functions: bool = False,
     ) -> None:
-        self._favoured = favoured
-        self._atoms = Atoms(requirements, of_moments=of_moments)
+        self._favoured, self._roles, self._functions = favoured, roles, functions
+        given = [name for name, role in roles.items() if role is Role.INPUT] if functions else ()
+        self._atoms = Atoms(requirements, of_moments=of_moments, given=given)
+        self._at_first = self._atoms.begin_apart(self._begun_by_outputs)
         self._pairs = remembered(self._atoms, steps)
         self._fresh = fresh
         self._kept = Memory(fresh, {})
@@ -101,7 +107,15 @@ class Cells:
         if atom is not None and (z3.is_true(atom.formula) or z3.is_false(atom.formula)):
             return bdd.true() if z3.is_true(atom.formula) else bdd.false()
         group = self._of.get(name)
-        return self._plain.atom(name) if group is None else group.atom(name)
+        value = self._plain.atom(name) if group is None else group.atom(name)
+        if name not in self._at_first:
+            return value
+        return bdd.ite(self._begun, value, self._atom(self._at_first[name]))
+
+    @property
+    def _begun(self) -> Function:
+        """Whether the first tick is over."""
+        return self._kept.keep(bdd.true())
 
     def _in_time(self, name: str) -> Function:
         """Function of a proposition that depends on earlier ticks, also over their memory."""
@@ -176,7 +190,7 @@ class Cells:
     @property
     def certain(self) -> Function:
         """Patterns without unknown values; patterns of earlier numbers are never certain."""
-        if self._atoms.before:
+        if self._atoms.before or self._atoms.free:
             return bdd.false()
         function = self._plain.certain
         for each in self._used:
@@ -191,11 +205,22 @@ class Cells:
         return bool(self._atoms.before)
 
     @property
+    def not_computed(self) -> frozenset[str]:
+        """Atoms with a term that is not linear."""
+        atoms = self._atoms.found.items()
+        return frozenset(
+            name for name, atom in atoms if not atom.reads.isdisjoint(self._atoms.free)
+        )
+
+    @property
     def open(self) -> str | None:
         """What the favoured player chooses although no player does; None: nothing."""
         before = next(iter(self._atoms.before), None)
         if before is not None:
             return f"of the previous value `{before}` only the truth of its comparisons is kept"
+        free = min(self._atoms.free, default=None)
+        if free is not None:
+            return f"`{free}` is not computed, and may have any value"
         unknown = next((why for each in self._used if (why := each.open) is not None), None)
         if unknown is not None:
             return unknown
@@ -203,6 +228,25 @@ class Cells:
         if first is not None:
             return f"the value of `{first}` before the first tick is unknown"
         return None
+
+    @property
+    def is_approximate(self) -> bool:
+        """Whether truth values are free that numbers decide, besides those in `open`."""
+        return bool(self._plain.uncertainties)
+
+    @property
+    def _begun_by_outputs(self) -> frozenset[str]:
+        """Earlier numbers whose value at the first tick depends on outputs of that tick.
+
+        A favoured environment would state them before the system chooses, and so too early.
+        """
+        if not self._functions:
+            return frozenset()
+        return frozenset(
+            name
+            for name, before in self._atoms.before.items()
+            if any(self._roles.get(each) is not Role.INPUT for each in read_by(before.first))
+        )
 
     @property
     def uncertainties(self) -> Mapping[Role, str]:
@@ -222,7 +266,8 @@ class Cells:
         names = set(self._plain.uncertain_atoms(role))
         if role is self._favoured:
             atoms = self._atoms.found.items()
-            names |= {name for name, atom in atoms if atom.reads & self._atoms.before.keys()}
+            open_ = self._atoms.before.keys() | self._atoms.free
+            names |= {name for name, atom in atoms if atom.reads & open_}
             names |= {name for name, group in self._of.items() if group.open is not None}
             names |= self._lasting.keys()
         return frozenset(names)
@@ -231,7 +276,8 @@ class Cells:
         """Stored facts about earlier ticks, which the player of the numbers must respect."""
         pairs = [pair for pair in self._pairs if pair.now in self._of and pair.then in self._of]
         agrees = self._agreement(pairs) if pairs else bdd.true()
-        bits = self._kept.needed([agrees, *(each.is_so for each in self._lasted.values())])
+        begun = [self._begun] if self._at_first else []
+        bits = self._kept.needed([agrees, *begun, *(each.is_so for each in self._lasted.values())])
         if not bits:
             return None
         steps = tuple(self._kept.steps[bit] for bit in bits)
@@ -247,7 +293,7 @@ class Cells:
         mine = {bit for function in then for bit in bdd.support(function)}
         others = [bit for bit in bdd.support(self.possible) if bit not in mine]
         agrees = bdd.exists(self.possible, bdd.cube(others))
-        begun = self._kept.keep(bdd.true())
+        begun = self._begun
         for pair, now in zip(pairs, then, strict=True):
             was = self._kept.keep(self.atom(pair.now))
             first = {True: now, False: -now, None: bdd.true()}[pair.first]

@@ -44,15 +44,22 @@ class Atoms:
     """Linear atoms of some requirements, by their names in formulas."""
 
     def __init__(
-        self, requirements: Sequence[FormalizedRequirement], *, of_moments: bool = False
+        self,
+        requirements: Sequence[FormalizedRequirement],
+        *,
+        of_moments: bool = False,
+        given: Collection[str] = (),
     ) -> None:
         """Collect the atoms.
 
         Args:
             requirements: the requirements.
             of_moments: whether only atoms of one known sample are read.
+            given: variables that are known before the system chooses. A term over these and earlier
+                numbers that is not linear may have any value.
         """
-        self._terms = RequirementTerms(requirements)
+        self._given = frozenset(given)
+        self._terms = RequirementTerms(requirements, may_be_free=self._is_given)
         self.found: dict[str, NumericAtom] = {}
         self.refused: dict[str, str] = {}
         """Comparison → why it has no formula here."""
@@ -79,6 +86,37 @@ class Atoms:
     def before(self) -> Mapping[str, PreviousValue]:
         """Variables for numbers of the previous tick → the names of these numbers."""
         return self._terms.before
+
+    @property
+    def free(self) -> Collection[str]:
+        """Variables for terms that may have any value."""
+        return self._terms.free
+
+    def begin_apart(self, begun: Collection[str]) -> Mapping[str, str]:
+        """Add an atom for the first tick of each atom that reads some earlier numbers.
+
+        Args:
+            begun: variables for numbers of the previous tick.
+
+        Returns:
+            Atom → the atom that has its value at the first tick.
+        """
+        variables = self.variables
+        firsts = [(variables[name], self.before[name].first) for name in begun]
+        apart = {
+            name: f"{name} at first"
+            for name, atom in self.found.items()
+            if not atom.reads.isdisjoint(begun)
+        }
+        for name, at_first in apart.items():
+            over = self.found[name].over
+            term = z3.simplify(z3.substitute(over.formula, *firsts))
+            self.found[at_first] = NumericAtom(AtomOfTick(term, over.given), read_by(term))
+        return apart
+
+    def _is_given(self, names: frozenset[str]) -> bool:
+        known = self._given | self._terms.before.keys() | self._terms.free
+        return bool(self._given) and names <= known
 
     @property
     def is_of_moments(self) -> bool:

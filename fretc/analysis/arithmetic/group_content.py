@@ -69,7 +69,8 @@ def owners(names: Sequence[str], atoms: Atoms, roles: Roles, past: Role) -> Mapp
         own = theirs.pop() if len(theirs) == 1 else None
         for read in sorted(atom.reads):
             of = atoms.of(read)
-            role = past if of in atoms.before else roles.get(of) or own
+            is_open = of in atoms.before or of in atoms.free
+            role = past if is_open else roles.get(of) or own
             if role is None or found.setdefault(read, role) is not role:
                 raise UnsupportedError(f"read `{of}`, which has no single role")
     return found

@@ -126,7 +126,8 @@ class Game:
     @property
     def is_memoryless(self) -> bool:
         """Whether every tick is like the first one, independent of earlier ticks."""
-        asked = (self.legal, self.reachable, self.safe, self.kept)
+        alone = (counter.safe for counter in self.counters)  # `safe` of all may be constant
+        asked = (self.legal, self.reachable, self.safe, self.kept, *alone)
         read = {number for each in asked for number in bdd.support(each)}
         return not self.duties and not self.promises and read.isdisjoint(self.transition.start)
 

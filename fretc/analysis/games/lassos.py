@@ -63,7 +63,7 @@ def lasso(
     """An endless run that satisfies all requirements, or proof that there is none; None: unknown.
 
     Args:
-        requirements: requirements with counters and certain valuations.
+        requirements: the requirements; without a counter or certain valuations, the answer is None.
         roles: roles of their variables, none of them an input.
         budget: time limit for the search.
         as_fret: whether no obligation may be open at the end of any tick.
@@ -73,6 +73,8 @@ def lasso(
     if not cells.numbers.is_of_moments:
         return None
     counters = arena(requirements, (), cells, fresh, as_fret=as_fret).counters
+    if len(counters) < len(requirements) or cells.is_approximate:
+        return None
     waiting = {counter.id for counter in counters if counter.fair is not None}
     search = _LassoSearch(cells, counters)
     for length in range(1, LONGEST + 1):

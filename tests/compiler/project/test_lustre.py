@@ -37,6 +37,10 @@ from tests.strategies import expressions
         ("x - (0.0 -> pre x) <= 10.0", "x - preReal(0.0, x) <= 10.0"),
         ("not (true -> pre b) and c", "!preBool(true, b) & c"),
         ("true -> pre (false -> pre b)", "preBool(true, preBool(false, b))"),
+        ("0.0 -> (x - pre x)", "x - preReal(x, x)"),
+        ("0.0 -> x - pre x", "x - preReal(x, x)"),
+        ("0 -> ( n - pre n ) * 10", "(n - preInt(n, n)) * 10"),
+        ("0.0 -> (x - pre x) / 2.5", "(x - preReal(x, x)) / 2.5"),
     ],
 )
 def test_lustre_is_read(text: str, meaning: str) -> None:
@@ -50,6 +54,13 @@ def test_lustre_is_read(text: str, meaning: str) -> None:
     [
         "",
         "0.0 -> x",
+        "1.0 -> (x - pre x)",
+        "0.0 -> (x - pre y)",
+        "0.0 -> (x - pre x) + 1.0",
+        "0.0 -> (x - pre x) / 0.0",
+        "0.0 -> (x - pre x) * y",
+        "0.0 -> x - pre x * 2.0",
+        "0.0 -> (x - pre x) * 2.0 + 1.0",
         "0.0 -> pre x + 1.0",
         "x - 1.0 -> pre x",
         "a or true -> pre b",

@@ -29,6 +29,32 @@ def only(fretc: Fretc, text: str) -> dict[str, Any]:
     return record
 
 
+@pytest.mark.parametrize(
+    ("id", "kind", "why"),
+    [
+        ("WIND_assumption", "assumption", ""),
+        ("R1", "requirement", ""),
+        (
+            "A1",
+            "assumption",
+            "F601 FRET cannot express an assumption without `assumption` in its id",
+        ),
+        (
+            "NoAssumption",
+            "requirement",
+            "F601 FRET cannot express a requirement with `assumption` in its id",
+        ),
+    ],
+)
+def test_an_id_that_says_another_kind_is_refused(
+    fretc: Fretc, id: str, kind: str, why: str
+) -> None:
+    path = write("r.fret", f'+++\nid = "{id}"\nkind = "{kind}"\n+++\nthe sw shall satisfy q\n')
+    run = fretc(path, "--emit", "fret-json", "-o", "-")
+    assert run.status == (2 if why else 0)
+    assert why in run.err
+
+
 # One requirement ------------------------------------------------------------------------------
 
 WRITTEN = """\

@@ -57,7 +57,7 @@ def test_what_a_part_decides_is_so_and_its_conflicts_are_minimal() -> None:
     choose = random.Random(2)
     counts = dict.fromkeys(RealizabilityVerdict, 0)
     by_part = shown = 0
-    for _ in range(400 if FULL else 8):
+    for _ in range(400 if FULL else 5):
         demands = choose.sample([*DEMANDS], choose.randint(2, 4))
         sentences = [f"the sw shall always satisfy {each}" for each in demands]
         setting = stage(requirements(*sentences, *THRESHOLDS), (), NAMED)
