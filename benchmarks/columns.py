@@ -21,7 +21,8 @@ import argparse
 import importlib
 import subprocess
 import sys
-from collections.abc import Callable, Collection, Mapping
+import tempfile
+from collections.abc import Callable, Collection, Iterator, Mapping
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -33,6 +34,8 @@ from mcap.records import ChunkIndex
 from mcap_ros1.decoder import DecoderFactory as Ros1
 from mcap_ros2.decoder import DecoderFactory as Ros2
 
+from benchmarks.figures import RUNS, Figure
+from benchmarks.logs import Options, record
 from benchmarks.timing import costs
 from compiler.project.folder import load
 from fretc.audit.many_logs import AuditOutcome, audit_logs
@@ -270,6 +273,26 @@ def measured(path: str, *, peers: bool) -> list[str]:
     for what in ("columns", "audit"):
         print(f"  memory of {what:<16} {memory(path, what):8.1f} MB")
     return too_slow
+
+
+def figures() -> Iterator[Figure]:
+    """A log of ten minutes without a camera, and one of half a minute with one."""
+    found, pictured, judged = declarations(), declarations(PICTURED), plan(Integrity.HASH)
+    with tempfile.TemporaryDirectory() as folder:
+        plain, camera = (str(Path(folder, name)) for name in ("plain.mcap", "camera.mcap"))
+        record(Path(plain), Options())
+        record(Path(camera), Options(seconds=30, camera=True))
+        rows: Mapping[str, tuple[str, Collection[str], Callable[[], object]]] = {
+            "columns, index": (plain, TOPICS, partial(ours, plain, found, Integrity.INDEX)),
+            "audit, hash": (plain, TOPICS, partial(audited, plain, judged)),
+            "images, index": (
+                camera, (*TOPICS, IMAGES), partial(ours, camera, pictured, Integrity.INDEX),
+            ),
+        }  # fmt: skip
+        for name, (path, topics, run) in rows.items():
+            taken = costs({"floor": floor(path, topics), "run": run}, RUNS)
+            value = taken["run"].wall / taken["floor"].wall
+            yield Figure(f"log: {name}", value, "x reading and inflating", LIMITS[name])
 
 
 PICTURED = f"""

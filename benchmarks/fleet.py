@@ -12,9 +12,11 @@ import argparse
 import os
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from benchmarks.figures import Figure
+from benchmarks.logs import Options, record
 from compiler.files.records import replace
 from compiler.files.text_files import sha256
 from compiler.project.folder import load
@@ -97,6 +99,25 @@ def table(results: Sequence[Result], path: Path) -> None:
     assert summary.whole["runs"] == RUNS
     size = path.stat().st_size / 1e6
     print(f"table of {RUNS} runs x 3 requirements: {size:.1f} MB, summarized in {taken:.2f} s")
+
+
+def figures(count: int = 60) -> Iterator[Figure]:
+    """A thousand ten-minute logs, from fewer: CPU time, shared by all cores."""
+    judged = plan(str(Path(__file__).parent / "job/r.fret"))
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        record(folder / "log.mcap", Options())
+        logs = linked(str(folder / "log.mcap"), count, folder)
+        cores, before = os.cpu_count() or 1, _cpu()
+        timed(judged, logs, local_executor(cores), folder / "store")
+        value = 1000 * (_cpu() - before) / count / cores
+        what = f"audit of 1 000 ten-minute logs, from {count}"
+        yield Figure(what, value, f"s of CPU on each of {cores} cores", 30)
+
+
+def _cpu() -> float:
+    """Seconds of this process and of its children that have ended."""
+    return sum(os.times()[:4])
 
 
 def main() -> None:

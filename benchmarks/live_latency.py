@@ -16,8 +16,13 @@ import os
 import statistics
 import subprocess
 import tempfile
+from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
+import pytest
+
+from benchmarks.figures import Figure
 from compiler.emit import TARGETS
 from compiler.files.text_files import write as deliver
 from compiler.project.folder import load
@@ -99,8 +104,12 @@ def seconds(process: subprocess.Popen[str]) -> float:
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
-def measured(made: Path, kind: str, scans: int) -> str:
-    """A line of the table: both nodes hear the same scans."""
+Measured = tuple[dict[str, list[float]], tuple[float, float]]
+"""Milliseconds to each answer, and CPU seconds of the emitted node and of the one by hand."""
+
+
+def measured(made: Path, kind: str, scans: int) -> Measured:
+    """Both nodes hear the same scans."""
     with tempfile.TemporaryDirectory() as folder, ros(Path(folder)) as here:
         here.environment = {**here.environment, "PYTHONPATH": str(made / "src")}
         here.master()
@@ -118,12 +127,11 @@ def measured(made: Path, kind: str, scans: int) -> str:
         assert lidar.stdout.readline() == "begun\n"
         before = seconds(node), seconds(by_hand)
         times = json.loads(lidar.stdout.readline())
-        took = seconds(node) - before[0], seconds(by_hand) - before[1]
-    return line(times, took, scans)
+        return times, (seconds(node) - before[0], seconds(by_hand) - before[1])
 
 
-def measured_in_ros2(made: Path, kind: str, scans: int, count: int) -> str:
-    """A line of the table: the same in ROS 2."""
+def measured_in_ros2(made: Path, kind: str, scans: int, count: int) -> Measured:
+    """The same in ROS 2."""
     with tempfile.TemporaryDirectory() as folder, network(Path(folder)) as here:
         robot = str(HERE / "live_robot_ros2.py")
         here.interceptor(made)
@@ -135,12 +143,11 @@ def measured_in_ros2(made: Path, kind: str, scans: int, count: int) -> str:
         assert lidar.stdout.readline() == "begun\n"
         before = seconds(node), seconds(by_hand)
         times = json.loads(lidar.stdout.readline())
-        took = seconds(node) - before[0], seconds(by_hand) - before[1]
-        return line(times, took, scans)
+        return times, (seconds(node) - before[0], seconds(by_hand) - before[1])
 
 
 def line(times: dict[str, list[float]], took: tuple[float, float], scans: int) -> str:
-    """Milliseconds to each answer, and CPU seconds of both nodes, as cells."""
+    """The cells of a row of the table."""
     spreads = " | ".join(_spread(times[each]) for each in ("stop", "by hand", "zero"))
     shares = " | ".join(f"{100 * each / (scans * 0.025):.1f} %" for each in took)
     lost = scans // 2 - 1 - len(times["stop"])
@@ -152,6 +159,28 @@ def _spread(times: list[float]) -> str:
         return f"{len(times)} answers | | "
     centiles = statistics.quantiles(times, n=100)
     return f"{centiles[49]:.2f} | {centiles[98]:.2f} | {max(times):.2f}"
+
+
+LIMIT = 1.3
+"""Times the CPU seconds of the node by hand."""
+_COUNT = 20
+"""Requirements in the emitted node."""
+
+
+def figures(scans: int = 400) -> Iterator[Figure]:
+    """CPU time of the emitted nodes, in each ROS that is installed."""
+    for number in (1, 2):
+        with tempfile.TemporaryDirectory() as folder, suppress(pytest.skip.Exception):
+            if number == 1:
+                ros1_or_skip()
+            made = package(Path(folder), "least", _COUNT, "header.stamp", number)
+            _, (ours, theirs) = (
+                measured(made, "least", scans)
+                if number == 1
+                else measured_in_ros2(made, "least", scans, _COUNT)
+            )
+            what = f"node of {_COUNT} requirements, ROS {number}, CPU"
+            yield Figure(what, ours / theirs, "x by hand", LIMIT)
 
 
 def main() -> None:
@@ -170,12 +199,12 @@ def main() -> None:
     ):
         with tempfile.TemporaryDirectory() as folder:
             made = package(Path(folder), kind, count, time, options.ros)
-            cells = (
+            both = (
                 measured(made, kind, scans)
                 if options.ros == 1
                 else measured_in_ros2(made, kind, scans, count)
             )
-            print(f"| {count}, {kind}, {time} | {cells} |", flush=True)
+            print(f"| {count}, {kind}, {time} | {line(*both, scans)} |", flush=True)
 
 
 if __name__ == "__main__":
