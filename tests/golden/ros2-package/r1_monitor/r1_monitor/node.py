@@ -215,7 +215,7 @@ class MonitorNode(LifecycleNode):
         self._status_publisher.on_heartbeat()
 
     def _refuses(self, topic):
-        """Whether somebody publishes messages there that would be misread; it is told once."""
+        """Whether somebody publishes messages there that would be misread; it is logged once."""
         name = self._heard[topic].topic_name
         if not self._own.get(topic):
             readers, own = self.get_subscriptions_info_by_topic(name), self.get_fully_qualified_name()
