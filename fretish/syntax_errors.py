@@ -30,8 +30,9 @@ from fretish.error_rules.order import (
     superfluous_article,
     wrong_timing,
 )
-from fretish.error_rules.unexpected import STARTS_EXPRESSION, Unexpected, not_fretish
+from fretish.error_rules.unexpected import STARTS_EXPRESSION, Lexeme, Unexpected, not_fretish
 from fretish.keywords import KEYWORDS
+from fretish.reading.lalr import END, Token, UnexpectedTokenError
 from fretish.units import unit, unknown_unit
 
 _GROUPS: tuple[tuple[str, frozenset[str]], ...] = (
@@ -69,6 +70,28 @@ _WEAKER = ("can", "may", "might", "could", "would", "has", "needs")
 _TWO_WORDS = re.compile(
     r"(?!(?:if|not|at)\b)[a-z]\w*\s+(?!(?:and|or|xor|mod|implies|iff|is)\b)[a-z]", re.IGNORECASE
 )
+
+
+def unexpected_word(error: UnexpectedTokenError, text: Span) -> Diagnostic:
+    """The diagnostic of the first word that the grammar does not allow at its place."""
+    token, before = error.token, error.previous
+    if token.type == "QUANTITY" and "NUMBER" in error.accepts:
+        return bad_probability(_lexeme(token, text).span)
+    return explain(
+        Unexpected(
+            _lexeme(token, text),
+            _lexeme(before, text) if before is not None else None,
+            error.accepts,
+            text,
+        )
+    )
+
+
+def _lexeme(token: Token, text: Span) -> Lexeme:
+    if token.type == END:
+        end = len(text.text.rstrip())
+        return Lexeme(token.type, text.part(end, end))
+    return Lexeme(token.type, text.part(token.start_pos, token.end_pos))
 
 
 def explain(unexpected: Unexpected) -> Diagnostic:

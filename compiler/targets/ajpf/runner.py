@@ -27,9 +27,7 @@ import subprocess
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import IO, Any
-
-from fretish.classes.frozen import dataclass
+from typing import IO, Any, NamedTuple
 
 SCHEMA = "fretc-ajpf-result-1"
 SHOWN, REFUTED, BAD, NOT_SHOWN = 0, 1, 2, 3
@@ -44,8 +42,7 @@ class UnusableError(Exception):
     """AJPF cannot run; the text says why."""
 
 
-@dataclass(frozen=True)
-class Tools:
+class Tools(NamedTuple):
     """The programs that run.py calls, and their versions."""
 
     java: str

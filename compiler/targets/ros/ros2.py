@@ -73,7 +73,8 @@ def _files(package: Package) -> dict[str, str]:
         for path, template in _TEMPLATES.items()
     }
     files |= {f"{name}/{file}": text for file, text in shared.modules(package).items()}
-    files |= {**shared.documents(package, 2), **container(package)}
+    files |= shared.documents(package, 2)
+    files |= container(package)
     files |= {f"resource/{name}": "", f"{name}/__init__.py": ""}
     files["test/test_monitor.py"] = shared.tests(package)
     if package.interception is not None:
