@@ -225,7 +225,8 @@ class OnlineEvaluator:
             topic: the topic of the message.
             time: the time of the message on the declared clock.
             arrival: the time of its reception on the clock of arrivals.
-            message: the message, with its fields as attributes.
+            message: the message, with its fields as attributes; None: one that cannot be read,
+                so that its signals are unknown.
             singles: the signals that are read from 32-bit floats.
 
         Raises:
@@ -239,7 +240,9 @@ class OnlineEvaluator:
             self._begin()
             self.pass_to(arrival)
         values = {
-            policy.name: sample(policy, message, policy.name in singles)
+            policy.name: None
+            if message is None
+            else sample(policy, message, policy.name in singles)
             for policy in self._setting.policies
             if policy.topic == topic
         }
@@ -249,6 +252,10 @@ class OnlineEvaluator:
             self.ledger.withdraw(*found)
             self._ahead = None
             self.changes += 1
+
+    def last(self, topic: str) -> "int | None":
+        """The latest time of a message of the topic in the present run; None: there was none."""
+        return self._latest.get(topic)
 
     def pass_to(self, now: int) -> None:
         """Advance to `now`: all messages received earlier have been processed."""

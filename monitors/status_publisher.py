@@ -56,11 +56,20 @@ class StatusPublisher:
 
     def on_message(self, topic: str, message: Any, singles: "Collection[str]" = ()) -> None:
         """Process a message; an exception stops the robot, and `on_heartbeat` raises it again."""
+        self._process(
+            lambda now: self._supervisor.arrive(topic, message, now, self._steady(), singles)
+        )
+
+    def on_refusal(self, topic: str, reason: str) -> None:
+        """Trust a topic no longer, until its next message; exceptions are those of a message."""
+        self._process(lambda now: self._supervisor.refuse(topic, reason, now))
+
+    def _process(self, step: "Callable[[int], None]") -> None:
         with self._lock:
             try:
                 now = self._channels.now()
                 if now:  # 0: the simulated clock has not started
-                    self._supervisor.arrive(topic, message, now, self._steady(), singles)
+                    step(now)
             except Exception as error:
                 self._failure = error
             self._publish(again=False)

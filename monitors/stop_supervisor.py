@@ -118,6 +118,14 @@ class StopSupervisor:
             self._unreadable.pop(topic, None)
             self._heard[topic] = steady
 
+    def refuse(self, topic: str, reason: str, now: int) -> None:
+        """Trust a topic no longer: its signals are unknown until its next message arrives."""
+        if self._unreadable.get(topic) != reason:
+            self._unreadable[topic] = reason
+            last = self._evaluator.last(topic) if self._setting.stamped else None
+            time = now if last is None else last + 1
+            self._judge(lambda: self._evaluator.arrive(topic, time, now, None), now)
+
     def pass_to(self, now: int) -> None:
         """Advance to `now`: all messages received earlier have been processed."""
         self._judge(lambda: self._evaluator.pass_to(now), now)

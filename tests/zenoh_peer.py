@@ -46,7 +46,7 @@ for name, value in {
     configuration.insert_json5(name, json.dumps(value))
 session = zenoh.open(configuration)
 print(session.zid(), flush=True)
-publishers, tokens, count = {}, {}, 0
+publishers, tokens, services, count = {}, {}, [], 0
 
 
 def attached(number, time, gid):
@@ -92,6 +92,18 @@ class Publisher:
             self.token.undeclare()
 
 
+def serve(key, request, data):
+    """Answer requests that have the form of rmw_zenoh's; without data, only their end is sent."""
+
+    def reply(query):
+        attached = query.attachment.to_bytes()
+        if query.payload.to_bytes() == request and len(attached) == 33 and attached[16] == 16:
+            if data:
+                query.reply(key, data, attachment=attached)
+
+    services.append(session.declare_queryable(key, reply, complete=True))
+
+
 def play(path, start, end, skip):
     """A part of a log, as it went, in seconds from its beginning; a message may be lost."""
     from mcap.reader import make_reader
@@ -113,7 +125,7 @@ def play(path, start, end, skip):
 for line in sys.stdin:
     asked = json.loads(line)
     do, name = asked.pop("do"), asked.pop("name", None)
-    for word in ("data", "attachment"):
+    for word in ("data", "attachment", "request"):
         if asked.get(word) is not None:
             asked[word] = base64.b64decode(asked[word])
     match do:
@@ -136,6 +148,8 @@ for line in sys.stdin:
             tokens[asked["key"]] = session.liveliness().declare_token(asked["key"])
         case "drop":
             tokens.pop(asked["key"]).undeclare()
+        case "serve":
+            serve(**asked)
         case "play":
             play(*asked["part"], asked["skip"])
     print(do, flush=True)
@@ -167,7 +181,7 @@ class Peer:
     def ask(self, do: str, **more: object) -> None:
         assert self.process.stdin is not None
         assert self.process.stdout is not None
-        for word in ("data", "attachment"):
+        for word in ("data", "attachment", "request"):
             value = more.get(word)
             if isinstance(value, bytes):
                 more[word] = b64encode(value).decode()

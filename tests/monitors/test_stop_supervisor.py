@@ -144,6 +144,28 @@ def test_silence_and_what_cannot_be_read_stop_it(emitted: Any) -> None:
     assert not run.stop
 
 
+def test_a_topic_that_is_refused_is_unknown_until_its_next_message(emitted: Any) -> None:
+    """Also one whose samples do not age: nobody judges by the last of them."""
+    run = Run(emitted, "SLOW")
+    run.y(0.0)
+    run.idle(1000)
+    assert not run.stop
+    run.supervisor.refuse("/y", "a robot lies", run.now)  # at 6.01 s
+    assert run.stop
+    run.idle(500)
+    run.supervisor.refuse("/y", "a robot lies", run.now)
+    assert run.stop
+    (status,) = [each for each in run.supervisor.statuses(run.steady) if each.name == "SLOW"]
+    assert status.message == "a message of /y cannot be read: a robot lies"
+    run.y(0.0)  # at 6.52 s
+    run.idle(200)
+    rows = run.supervisor._evaluator.ledger
+    slow = [(rows.time(i), dict(rows.row(i))["slow"]) for i in range(len(rows) - 11, len(rows))]
+    assert slow[0][0] == 5_710 * MS
+    assert slow[-1][0] == 6_710 * MS
+    assert [known for _, known in slow] == [True] * 3 + [None] * 6 + [True] * 2
+
+
 def test_a_clock_that_is_set_begins_another_run_and_no_violation_is_forgotten(emitted: Any) -> None:
     run = Run(emitted, "STOP")
     run.x(5.0)

@@ -336,11 +336,42 @@ class Node:
         """How many publishers of a topic the graph knows of."""
         return len([each for each in self.process.world.publishers if each.topic == topic_name])
 
+    def get_publishers_info_by_topic(self, topic_name: str) -> list[Any]:
+        """The publishers of a topic; the name is not remapped."""
+        return [
+            _endpoint(each, each.topic)
+            for each in self.process.world.publishers
+            if each.topic == topic_name
+        ]
+
+    def get_subscriptions_info_by_topic(self, topic_name: str) -> list[Any]:
+        """The subscriptions of a topic; the name is not remapped."""
+        return [
+            _endpoint(each, each.topic_name)
+            for each in self.process.world.subscriptions
+            if each.topic_name == topic_name
+        ]
+
+    def get_fully_qualified_name(self) -> str:
+        return f"/{self.name}"
+
     def destroy_node(self) -> None:
         """All that the node has created is gone; it is not called back any more."""
         self.publishers, self.subscriptions, self.timers = [], [], []
         if self in self.process.nodes:
             self.process.nodes.remove(self)
+
+
+def _endpoint(each: Publisher | Subscription, topic: str) -> Any:
+    """rclpy.topic_endpoint_info.TopicEndpointInfo: the hash is there since Iron."""
+    return SimpleNamespace(
+        node_name=each.node.name,
+        node_namespace="/",
+        topic_type=each.kind.__name__,
+        topic_type_hash=each.node.process.world.hashes.get(topic, "RIHS01_00")
+        if isinstance(each, Publisher)
+        else "RIHS01_00",
+    )
 
 
 class Return(enum.Enum):

@@ -138,6 +138,8 @@ class World:
         self.steady, self._start = 0, start
         self.acknowledges = True
         """Whether the middleware knows what subscribers have got (Zenoh and some others do not)."""
+        self.hashes: dict[str, str] = {}
+        """Topics whose publishers have another definition of their type, with its hash."""
         self.processes: list[Process] = []
         self.sent: dict[str, list[tuple[int, Any]]] = defaultdict(list)
         """Of each topic all messages, each with the steady time of its publication."""
@@ -167,13 +169,13 @@ class World:
         return [p for each in self.processes for node in each.nodes for p in node.publishers]
 
     @property
-    def _subscriptions(self) -> list[rclpy.Subscription]:
+    def subscriptions(self) -> list[rclpy.Subscription]:
         return [s for each in self.processes for node in each.nodes for s in node.subscriptions]
 
     def send(self, publisher: rclpy.Publisher, message: Any) -> None:
         self.sent[publisher.topic].append((self.steady, message))
         publisher.kept.append(message)
-        for subscription in self._subscriptions:
+        for subscription in self.subscriptions:
             if self._matches(publisher, subscription):
                 self._deliver(subscription, message)
 

@@ -145,7 +145,7 @@ class _Client:
     def answer(self) -> str | None:
         """The definition, once the service has sent the one with the type hash of the offer."""
         if not self._is_sent and self._writer.readers and self._reader.publishers:
-            self._writer.write(_request(self._offer))
+            self._writer.write(request(self._offer))
             self._is_sent = True
         for sample in self._reader.samples():
             text = described(sample.payload, self._offer)
@@ -192,7 +192,8 @@ def _type(individual: Any) -> DescribedType:
     return DescribedType(individual.type_name, tuple(fields))
 
 
-def _request(offer: Offer) -> bytes:
+def request(offer: Offer) -> bytes:
+    """The question for the definition of a type, as CDR with its head."""
     name = _name("Request")
     kind = _store().types[name]
     question = kind(type_name=offer.type, type_hash=offer.hash, include_type_sources=False)

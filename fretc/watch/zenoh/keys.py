@@ -104,6 +104,11 @@ def token(key: str) -> Token | None:
     return Token(f"{namespace}/{parts[_NODE]}", key)
 
 
+def attached(of: Attachment) -> bytes:
+    """The bytes of an attachment, as `attachment` reads them."""
+    return _NUMBERS.pack(of.number, of.sent or 0) + bytes([len(of.gid)]) + of.gid
+
+
 def attachment(data: bytes) -> Attachment | None:
     """What is attached to a message; None: nothing that is known.
 

@@ -104,6 +104,11 @@ class Publishers:
         there = (each for each in self._all.values() if not each.is_reported)
         return sorted({each.token.node for each in there if each.topic == topic})
 
+    def nodes_of(self, key: str) -> list[str]:
+        """The names of the nodes that publish with a key, sorted; as above."""
+        there = (each for each in self._all.values() if not each.is_reported)
+        return sorted({each.token.node for each in there if each.token.key == key})
+
     def since(self, key: str) -> int | None:
         """When the first publisher with this key appeared; None: before the watch, or never."""
         return self._since.get(key)

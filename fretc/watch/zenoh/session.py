@@ -140,6 +140,47 @@ class ZenohSession:
             raise SessionError(_reason(error)) from None
         return answered
 
+    def request(
+        self,
+        service: str,
+        payload: bytes,
+        attached: bytes,
+        patience: float,
+        on_answer: Callable[[bytes], None],
+        on_end: Callable[[], None],
+    ) -> None:
+        """Ask services; each answer is passed on, and then the end, which always comes.
+
+        Args:
+            service: the key expression of the services.
+            payload: the request.
+            attached: the attachment of the request.
+            patience: seconds for all answers.
+            on_answer: takes the payload of an answer.
+            on_end: called when no answer can come any more.
+
+        Raises:
+            SessionError: the session is closed.
+        """
+        from zenoh import ConsolidationMode, QueryTarget, ZError
+
+        def take(reply: Any) -> None:
+            if reply.ok is not None:
+                on_answer(reply.ok.payload.to_bytes())
+
+        try:
+            self._session.get(
+                service,
+                _direct(take, on_end),
+                target=QueryTarget.ALL,
+                consolidation=ConsolidationMode.NONE,
+                timeout=patience,
+                payload=payload,
+                attachment=attached,
+            )
+        except ZError as error:
+            raise SessionError(_reason(error)) from None
+
     def close(self) -> None:
         """End the session."""
         from zenoh import ZError

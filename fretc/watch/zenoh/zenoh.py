@@ -17,8 +17,11 @@ from fretc.watch.sources.mailbox import WAIT
 from fretc.watch.sources.middleware import Middleware, several_publishers
 from fretc.watch.sources.ros2_definitions import definition, no_definition
 from fretc.watch.sources.source import Channel, Missed, Reconnected
+from fretc.watch.sources.type_service import request
 from fretc.watch.zenoh.keys import (
+    Attachment,
     Token,
+    attached,
     attachment,
     has_key,
     keys_of_messages,
@@ -29,6 +32,7 @@ from fretc.watch.zenoh.keys import (
 from fretc.watch.zenoh.publishers import Publisher, Publishers
 from fretc.watch.zenoh.sequence_numbers import Numbers
 from fretc.watch.zenoh.session import SessionError, ZenohSession, unless_importable
+from fretc.watch.zenoh.type_questions import Held, Question, TypeQuestions
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.messages import diagnostic
@@ -39,7 +43,10 @@ PATIENCE = 5.0
 """Seconds for the other side to answer."""
 MOST_KINDS = 20
 """The most keys of a topic, thus types of its messages; further ones are not read."""
-_NO_DEFINITIONS = "Zenoh does not send definitions"
+_ANSWERS = 3.0
+"""Seconds for a node to describe a type."""
+_ASKER = bytes(range(1, 17))
+"""What identifies fretc in its requests."""
 _PING = 0.5
 """Seconds between two questions whether the other side still answers."""
 _NAMES = 4
@@ -88,6 +95,7 @@ class Zenoh(Middleware):
         self._numbers = Numbers()
         self._channels: dict[str, dict[str, Channel | None]] = {}
         """For each topic and key the channel; None: it is not read."""
+        self._questions = TypeQuestions()
         self._missed: Missed | None = None
         """Lost messages that are reported after the next connection."""
         self._unnumbered: dict[str, int] = {}
@@ -111,6 +119,8 @@ class Zenoh(Middleware):
                 while not self._closed.wait(WAIT):
                     self._look(connection)
             finally:
+                with self._lock:
+                    self._questions.drop()
                 session.close()
         except SessionError as error:
             with self._lock:
@@ -150,6 +160,7 @@ class Zenoh(Middleware):
         """
         if connection.session.lost.is_set():
             raise SessionError("the connection was lost")
+        self._ask_for_types(connection)
         now, waited = self._mailbox.now, time.monotonic() - connection.asked_at
         if connection.is_mute:
             if waited > _PING:
@@ -210,6 +221,7 @@ class Zenoh(Middleware):
             ]
             since = min((time for time in times if time is not None), default=before.gone)
             self._mailbox.tell(Reconnected(min(since, now), now))
+        self._question(connection, found.key)
         there = publishers.count(topic)
         if there > 1 and (Code.SEVERAL_PUBLISHERS, topic) not in self._known:
             names = [node[:_NAME] for node in publishers.nodes(topic)[:_NAMES]]
@@ -227,23 +239,32 @@ class Zenoh(Middleware):
     # Messages
 
     def _take(
-        self, connection: _Connection, topic: str, key: str, payload: bytes, attached: bytes
+        self, connection: _Connection, topic: str, key: str, payload: bytes, attachment_: bytes
     ) -> None:
-        """Take a message."""
+        """Take a message, at once or when it is known how to read it."""
+        message = Held(topic, payload, attachment_)
         with self._lock:
-            channel = self._channel(topic, key)
-            if channel is None:
-                return
-            of = attachment(attached)
-            if of is None:
-                self._tell_once(topic, diagnostic("unnumbered_messages", topic=topic))
-                self._unnumbered[key] = self._put(channel, payload)
-                return
-            since = connection.publishers.since(key)
-            missed = self._numbers.missed(key, of, since, self._mailbox.now)
-            if missed is not None:
-                self._miss(connection, missed)
-            self._numbers.arrived(key, of, self._put(channel, payload, of.sent))
+            if key not in self._channels.get(topic, {}):
+                self._question(connection, key)
+            if not self._questions.holds(key, message):
+                self._accept(connection, key, message)
+
+    def _accept(self, connection: _Connection, key: str, message: Held) -> None:
+        """Pass on a message."""
+        topic, payload = message.topic, message.payload
+        channel = self._channel(topic, key)
+        if channel is None:
+            return
+        of = attachment(message.attached)
+        if of is None:
+            self._tell_once(topic, diagnostic("unnumbered_messages", topic=topic))
+            self._unnumbered[key] = self._put(channel, payload)
+            return
+        since = connection.publishers.since(key)
+        missed = self._numbers.missed(key, of, since, self._mailbox.now)
+        if missed is not None:
+            self._miss(connection, missed)
+        self._numbers.arrived(key, of, self._put(channel, payload, of.sent))
 
     def _miss(self, connection: _Connection, missed: Missed) -> None:
         """Report lost messages, unless the connection is lost too: then once it is back."""
@@ -269,13 +290,53 @@ class Zenoh(Middleware):
             why = f"there are more than {MOST_KINDS} types of messages of the topic"
             self._tell_once(topic, _not_read(topic, why))
             return None
-        text = definition(kind.type, kind.hash)
+        text = definition(kind.type, kind.hash) or self._questions.definition(key)
         if text is None:
-            self._tell_once(topic, no_definition(topic, kind.type, kind.hash, _NO_DEFINITIONS))
+            problem = no_definition(topic, kind.type, kind.hash, "no node describes it")
+            self._tell_once(topic, problem)
         channels[key] = Channel(
             topic, "cdr", kind.type, "" if text is None else "ros2msg", (text or "").encode()
         )
         return channels[key]
+
+    # Definitions
+
+    def _question(self, connection: _Connection, key: str) -> None:
+        """Let the nodes that publish messages with this key be asked if their type is unknown."""
+        kind = kind_of_message(key)
+        if kind is None or kind.hash is None or not self._questions.may_ask(key):
+            return
+        if definition(kind.type, kind.hash) is None:
+            nodes = connection.publishers.nodes_of(key)
+            self._questions.ask(connection.domain, key, kind, nodes)
+
+    def _ask_for_types(self, connection: _Connection) -> None:
+        """Send the questions since the last call.
+
+        Raises:
+            SessionError: the session is closed.
+        """
+        with self._lock:
+            questions = self._questions.unsent()
+        for question in questions:
+            for service in question.services:
+                connection.session.request(
+                    service,
+                    request(question.offer),
+                    attached(Attachment(1, time.time_ns(), _ASKER)),
+                    _ANSWERS,
+                    partial(self._answered, question),
+                    partial(self._ended, connection, question),
+                )
+
+    def _answered(self, question: Question, payload: bytes) -> None:
+        with self._lock:
+            question.take(payload)
+
+    def _ended(self, connection: _Connection, question: Question) -> None:
+        with self._lock:
+            for message in self._questions.end(question):
+                self._accept(connection, question.key, message)
 
     def _tell_once(self, topic: str, problem: Diagnostic) -> None:
         if (problem.code, topic) not in self._known:

@@ -85,6 +85,16 @@ class Robot:
         """Ask the monitor for transitions of a managed node; whether it has made each."""
         return [self.ask(f"change {NODE} {each}")["done"] for each in transitions]
 
+    def goes_on(self) -> None:
+        """It is put far away, again and again, until it drives."""
+
+        def holds(state: dict[str, Any]) -> bool:
+            if state["clearance"] < 0.1:
+                self.ask("away")
+            return bool(state["wheels"]) and state["wheels"][-1] > 0 and state["speed"] > 0
+
+        self.until("it drives", holds)
+
     def drives(self) -> None:
         self.until("it drives", lambda state: state["speed"] > 0)
 

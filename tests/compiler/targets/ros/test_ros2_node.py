@@ -91,6 +91,37 @@ def test_without_any_message_the_robot_stands(package: Path, silent: str) -> Non
     assert "no message of " in status.message
 
 
+def test_another_definition_of_a_type_stops_the_robot_and_is_told_once(package: Path) -> None:
+    robot, monitor = driving(package)
+    robot.world.hashes["/scan"] = "RIHS01_ff"
+    robot.world.run(1.0)
+    assert robot.stop
+    assert robot.wheels == 0.0
+    robot.see(3.0)
+    robot.world.run(0.0)
+    assert robot.stop
+    what = "another definition of LaserScan, RIHS01_ff"
+    assert monitor.node.log == [
+        ("error", f"/scan: /robot publishes {what}: nothing is known of it meanwhile")
+    ]
+    assert robot.diagnostics["r1_monitor: R1"].message == (
+        f"a message of /scan cannot be read: /robot publishes {what}"
+    )
+    robot.world.hashes["/scan"] = "INVALID"  # of a publisher that does not state it
+    robot.world.run(3.0)
+    assert robot.wheels == FORWARD
+    odometry = message_class("nav_msgs/Odometry")
+    other = robot._node.create_publisher(odometry, "/scan", 10)
+    robot.world.run(1.0)
+    assert robot.wheels == 0.0
+    assert monitor.node.log[1:] == [
+        ("error", "/scan: /robot publishes Odometry: nothing is known of it meanwhile")
+    ]
+    robot._node.destroy_publisher(other)
+    robot.world.run(3.0)
+    assert robot.wheels == FORWARD
+
+
 @pytest.mark.parametrize("ranges", [[math.nan] * 3, [], [0.0, math.nan]])
 def test_a_sensor_that_says_nothing_stops_the_robot(package: Path, ranges: list[float]) -> None:
     robot, _ = driving(package)

@@ -89,6 +89,12 @@ class MonitorNode(LifecycleNode):
         self._status_publisher = None
         """There while the node is active."""
         self._stops = self._verdicts = self._diagnostics = None
+        self._heard = {}
+        """Topic -> its subscription, of an active node."""
+        self._own = {}
+        """Topic -> the description of this subscription, once it is there."""
+        self._foreign = {}
+        """Topic -> who publishes other messages there, as was told last."""
         self._destructions = []
         """What takes back the subscriptions and the timer of an active node."""
 
@@ -117,9 +123,8 @@ class MonitorNode(LifecycleNode):
         for source in SOURCES:
             self._subscribe(*source)
         # A steady clock: simulated or corrected time must not stop a watchdog.
-        publisher = self._status_publisher
-        timer = self.create_timer(
-            publisher.heartbeat, publisher.on_heartbeat, clock=self._steady)
+        heartbeat = self._status_publisher.heartbeat
+        timer = self.create_timer(heartbeat, self._on_heartbeat, clock=self._steady)
         self._destructions.append(lambda: self.destroy_timer(timer))
         return result
 
@@ -156,6 +161,8 @@ class MonitorNode(LifecycleNode):
         self._status_publisher = None
         while self._destructions:
             self._destructions.pop()()
+        for each in (self._heard, self._own, self._foreign):
+            each.clear()
 
     def _flush(self):
         """Wait until the last request is sent: what is destroyed sends nothing again."""
@@ -192,11 +199,35 @@ class MonitorNode(LifecycleNode):
         return self._steady.now().nanoseconds / 1e9
 
     def _subscribe(self, topic, kind, qos):
-        on_message, known = self._status_publisher.on_message, singles(topic, kind)
-        subscription = self.create_subscription(
-            kind, topic, lambda message: on_message(topic, message, known), qos
-        )
+        publisher, known = self._status_publisher, singles(topic, kind)
+
+        def on_message(message):
+            if not self._refuses(topic):
+                publisher.on_message(topic, message, known)
+
+        subscription = self.create_subscription(kind, topic, on_message, qos)
+        self._heard[topic] = subscription
         self._destructions.append(lambda: self.destroy_subscription(subscription))
+
+    def _on_heartbeat(self):
+        for topic in self._heard:
+            self._refuses(topic)
+        self._status_publisher.on_heartbeat()
+
+    def _refuses(self, topic):
+        """Whether somebody publishes messages there that would be misread; it is logged once."""
+        name = self._heard[topic].topic_name
+        if not self._own.get(topic):
+            readers = self.get_subscriptions_info_by_topic(name)
+            own = self.get_fully_qualified_name()
+            self._own[topic] = [each for each in readers if node_of(each) == own]
+        foreign = another(self._own[topic], self.get_publishers_info_by_topic(name))
+        if foreign and foreign != self._foreign.get(topic):
+            self.get_logger().error(f"{name}: {foreign}: nothing is known of it meanwhile")
+        self._foreign[topic] = foreign
+        if foreign:
+            self._status_publisher.on_refusal(topic, foreign)
+        return bool(foreign)
 
     def _report(self, statuses):
         message = DiagnosticArray()
@@ -222,6 +253,33 @@ def described(text, least=None, most=None):
 def singles(topic, kind):
     """Return the signals of a topic that are read from 32-bit floats."""
     return single_signals(SETTING, topic, kind(), lambda m: m.get_fields_and_field_types())
+
+
+def node_of(endpoint):
+    """Return the full name of the node of a publisher or a subscription."""
+    return f"{endpoint.node_namespace.rstrip('/')}/{endpoint.node_name}"
+
+
+def hash_of(endpoint):
+    """Return the hash of the definition of its type; "INVALID": it is not known."""
+    return str(getattr(endpoint, "topic_type_hash", "INVALID"))  # since Iron
+
+
+def another(own, publishers):
+    """
+    Return who publishes another type than `own`, or another definition of it; "": nobody.
+
+    The middleware matches types by their names: the other fields would be misread.
+    """
+    for publisher in publishers:
+        for each in own:
+            hashes = {hash_of(publisher), hash_of(each)} - {"INVALID"}
+            if publisher.topic_type != each.topic_type:
+                return f"{node_of(publisher)} publishes {publisher.topic_type}"
+            if len(hashes) > 1:
+                what = f"another definition of {each.topic_type}, {hash_of(publisher)}"
+                return f"{node_of(publisher)} publishes {what}"
+    return ""
 
 
 def tell(what):
