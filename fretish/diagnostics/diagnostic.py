@@ -208,6 +208,7 @@ class Code(Enum):
     BAD_AJPF_RESULT = ("F616", "a result of AJPF cannot be read")
     FOREIGN_AJPF_RESULT = ("F617", "a result of AJPF belongs to no current requirement")
     NOT_OF_ALL = ("F618", "an output for all requirements cannot include some of them")
+    ACTION_NOT_BOUND = ("F619", "an action of the agent is not bound to a topic")
     TOO_LARGE = ("F670", "the output would be too large")
 
     SHORT_HOLD = ("F630", "the interceptor holds zero no longer than messages may be lost")
