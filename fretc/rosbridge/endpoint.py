@@ -151,12 +151,13 @@ class _Client:
         self._replies: deque[dict[str, Any]] = deque(maxlen=_MOST_REPLIES)
         self.session = Session(graph, self._replies.append)
         self.awake = asyncio.Event()
-        self._fragmented = 0
+        self._count = self._fragmented = 0
 
     def put(self, topic: str, message: Any) -> None:
         queue = self.session.queues.get(topic)
         if queue is not None:
-            queue.put(message, asyncio.get_running_loop().time())
+            self._count += 1
+            queue.put(self._count, message, asyncio.get_running_loop().time())
             self.awake.set()
 
     async def send(self, connection: ServerConnection) -> None:
@@ -169,7 +170,7 @@ class _Client:
                 self.awake.clear()
                 while self._replies:
                     await connection.send(as_json(self._replies.popleft()))
-                for topic in [*self.session.queues]:
+                while (topic := self._next(loop.time())) is not None:
                     await self._send_topic(connection, topic, loop.time())
                 due = min((q.due() for q in self.session.queues.values()), default=float("inf"))
                 wait = None if due == float("inf") else max(0.0, due - loop.time())
@@ -180,10 +181,15 @@ class _Client:
         except ConnectionClosed:
             return
 
+    def _next(self, now: float) -> str | None:
+        """The topic of the earliest message that may be sent."""
+        due = [
+            (q.waiting[0][0], topic) for topic, q in self.session.queues.items() if q.due() <= now
+        ]
+        return min(due)[1] if due else None
+
     async def _send_topic(self, connection: ServerConnection, topic: str, now: float) -> None:
-        queue = self.session.queues.get(topic)
-        if queue is None or queue.due() > now:
-            return
+        queue = self.session.queues[topic]
         options = queue.merged
         operation = {"op": "publish", "topic": topic, "msg": queue.take(now)}
         if options.compression == "cbor":

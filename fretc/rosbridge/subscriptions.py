@@ -35,7 +35,8 @@ class TopicQueue:
     """A client's subscriptions to one topic, and the messages that wait."""
 
     subscriptions: dict[str, Subscription] = field(default_factory=dict)
-    waiting: deque[Any] = field(default_factory=deque)
+    waiting: deque[tuple[int, Any]] = field(default_factory=deque)
+    """Messages with their numbers in the order of all topics."""
     sent: float = float("-inf")
 
     @property
@@ -51,7 +52,7 @@ class TopicQueue:
             "cbor" if cbor else "none",
         )
 
-    def put(self, message: Any, now: float) -> None:
+    def put(self, number: int, message: Any, now: float) -> None:
         """Take a message to send."""
         merged = self.merged
         if not merged.queue and now < self.sent + merged.throttle:
@@ -59,7 +60,7 @@ class TopicQueue:
         most = merged.queue or (1 if merged.throttle else MOST_WAITING)
         while len(self.waiting) >= most:
             self.waiting.popleft()
-        self.waiting.append(message)
+        self.waiting.append((number, message))
 
     def due(self) -> float:
         """When the next message may be sent; infinity if none waits."""
@@ -68,7 +69,7 @@ class TopicQueue:
     def take(self, now: float) -> Any:
         """The next message, which is sent now."""
         self.sent = now
-        return self.waiting.popleft()
+        return self.waiting.popleft()[1]
 
 
 def fragments(text: str, size: int, id: str) -> Iterator[dict[str, Any]]:

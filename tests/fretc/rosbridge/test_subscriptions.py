@@ -10,7 +10,7 @@ def queue(*subscriptions: Subscription) -> TopicQueue:
 def test_without_options_every_message_is_sent_at_once() -> None:
     topic = queue(Subscription())
     for number in range(3):
-        topic.put(number, 10.0)
+        topic.put(0, number, 10.0)
     assert topic.due() <= 10.0
     assert [topic.take(10.0) for _ in range(3)] == [0, 1, 2]
     assert topic.due() == float("inf")
@@ -18,20 +18,20 @@ def test_without_options_every_message_is_sent_at_once() -> None:
 
 def test_without_a_queue_messages_within_the_throttled_time_are_dropped() -> None:
     topic = queue(Subscription(throttle=1.0))
-    topic.put("a", 10.0)
+    topic.put(0, "a", 10.0)
     assert topic.take(10.0) == "a"
-    topic.put("b", 10.5)
+    topic.put(0, "b", 10.5)
     assert topic.due() == float("inf")
-    topic.put("c", 11.0)
+    topic.put(0, "c", 11.0)
     assert topic.due() == 11.0
 
 
 def test_a_full_queue_loses_its_oldest_message() -> None:
     topic = queue(Subscription(throttle=1.0, queue=2))
-    topic.put("a", 10.0)
+    topic.put(0, "a", 10.0)
     topic.take(10.0)
     for message in "bcd":
-        topic.put(message, 10.1)
+        topic.put(0, message, 10.1)
     assert topic.due() == 11.0
     assert [topic.take(11.0), topic.take(12.0)] == ["c", "d"]
 
@@ -39,7 +39,7 @@ def test_a_full_queue_loses_its_oldest_message() -> None:
 def test_a_slow_client_does_not_fill_the_memory() -> None:
     topic = queue(Subscription())
     for number in range(MOST_WAITING + 5):
-        topic.put(number, 0.0)
+        topic.put(0, number, 0.0)
     assert (len(topic.waiting), topic.take(0.0)) == (MOST_WAITING, 5)
 
 
