@@ -33,7 +33,7 @@ from fretish.system.processes import kill_all
 CLOCK, TRACE = "/clock", "/agent/trace"
 START = 60.0
 """Seconds for the agent to compile, to start and to connect."""
-PATIENCE = 3.0
+PATIENCE = 10.0
 """Seconds for the agent to perceive and to act."""
 _SECOND = 10**9
 
@@ -90,6 +90,9 @@ class AgentLink:
             if times.monotonic() > end:
                 raise AgentError(f"it has not connected within {START:g} seconds")
             times.sleep(0.02)
+        self._ask(1, START)
+        if not self.speaks:
+            raise AgentError(f"it has not answered within {START:g} seconds")
 
     # What the simulation asks
 
@@ -117,12 +120,12 @@ class AgentLink:
         assert self._endpoint is not None, "it is connected"
         self._endpoint.publish(topic, message)
 
-    def _ask(self, time: int) -> bool:
+    def _ask(self, time: int, patience: float = PATIENCE) -> bool:
         """The stop request after all that was published, at a time."""
         self._now = time
         seconds, nanoseconds = divmod(time, _SECOND)
         self._publish(CLOCK, {"clock": {"sec": seconds, "nanosec": nanoseconds}})
-        end = times.monotonic() + (PATIENCE if self.speaks else 0)
+        end = times.monotonic() + (patience if self.speaks else 0)
         while True:
             if self.process.poll() is not None:
                 end = 0.0

@@ -183,7 +183,7 @@ import java.nio.ByteBuffer;
 import java.util.Base64;
 public final class Main {
     public static String truth(String form, String text) {
-        View view = new View();
+        View view = new View(false);
         try {
             byte[] bytes = Base64.getDecoder().decode(text);
             String json = new String(bytes, java.nio.charset.StandardCharsets.UTF_8);
@@ -196,6 +196,34 @@ public final class Main {
         return String.valueOf(view.truths(1000)[0]);
     }
     private Main() {}
+}
+"""
+STAMPS = """
+package r0_agent;
+import java.util.*;
+public final class Stamps {
+    /** Each argument after the first: stamp and arrival in ms, and x; or a time. */
+    public static void main(String[] args) {
+        View view = new View(args[0].equals("simulated"));
+        for (String each : Arrays.asList(args).subList(1, args.length)) {
+            String[] parts = each.split(" ");
+            long now = Long.parseLong(parts[parts.length > 1 ? 1 : 0]) * 1000000;
+            if (parts.length > 1) {
+                Map<String, Object> stamp = new HashMap<>();
+                long time = Long.parseLong(parts[0]);
+                stamp.put("sec", (double) (time / 1000));
+                stamp.put("nanosec", (double) (time % 1000 * 1000000));
+                Map<String, Object> header = new HashMap<>();
+                header.put("stamp", stamp);
+                Map<String, Object> message = new HashMap<>();
+                message.put("header", header);
+                message.put("x", Double.valueOf(parts[2]));
+                view.arrive("/s", message, now);
+            }
+            System.out.println(view.truths(now)[0]);
+        }
+    }
+    private Stamps() {}
 }
 """
 ALL = """
@@ -245,6 +273,7 @@ def classes(tmp_path_factory: pytest.TempPathFactory) -> Path:
         cases.append(
             f'case "{name}": System.out.println({name}.Main.truth(parts[1], parts[2])); break;'
         )
+    (folder / "r0_agent/Stamps.java").write_text(STAMPS, encoding="utf-8")
     (folder / "All.java").write_text(ALL % "\n".join(cases), encoding="utf-8")
     files = [str(file.relative_to(folder)) for file in folder.rglob("*.java")]
     command = [installed("javac"), "--release", "11", "-Xlint:all", "-Werror", "-d", "out", *files]
@@ -319,3 +348,40 @@ def test_bytes_that_are_no_message_are_malformed_and_nothing_else(classes: Path)
     lines += [f"r6_agent cbor {deep[0]}", f"r6_agent json {deep[1]}", f"r6_agent cbor {deep[2]}"]
     for answer in asked(classes, lines):
         assert answer in ("true", "false", "null") or answer.startswith("malformed "), answer
+
+
+T, F, N = "true", "false", "null"
+AHEAD = 5_000_000
+"""Milliseconds by which the sender's clock is ahead."""
+
+
+@needs("javac", "java")
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("kind", "events", "truths"),
+    [
+        ("real", ["1000 1000 4", "1299", "1301"], [T, T, N]),  # `max_age` is 300 ms
+        ("real", [f"{AHEAD} 10 4", f"{AHEAD + 100} 110 9", "411"], [T, F, N]),
+        ("real", ["1000 1050 4", "1100 1450 9", "1200 1250 4"], [T, F, T]),
+        ("real", ["1000 1050 4", "1100 1500 9"], [T, N]),  # it waited for 400 ms
+        ("real", ["1000 1050 4", "1200 1250 9", "1100 1260 4"], [T, F, F]),  # overtaken
+        ("real", ["9000 1000 4", "6000 1100 9", "6100 1200 4"], [T, F, T]),  # set back by 3 s
+        (
+            "real",  # set back by half a second: ten messages count as overtaken
+            ["9000 1000 4", *(f"{8600 + k} {1100 + 100 * k} 4" for k in range(12))],
+            [T, T, T, T, *[N] * 7, T, T],
+        ),
+        ("simulated", ["1000 1000 4", "1100 1450 9", "1200 1450 4"], [T, N, T]),
+        ("simulated", ["5000 1000 4", "5100 5200 9"], [T, F]),  # the clock was late
+    ],
+)
+def test_a_message_is_as_old_as_its_stamp(
+    classes: Path, kind: str, events: list[str], truths: list[str]
+) -> None:
+    done = subprocess.run(
+        [installed("java"), "-cp", str(classes), "r0_agent.Stamps", kind, *events],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout.split() == truths
