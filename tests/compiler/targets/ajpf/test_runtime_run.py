@@ -16,6 +16,7 @@ from typing import Any
 
 import pytest
 
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.ajpf import runtime_runner
 from fretc.rosbridge.endpoint import Endpoint
 from tests.compiler.targets.ajpf.test_runtime import compiled, made, texts, write
@@ -42,14 +43,14 @@ def scan(distance: float) -> dict[str, Any]:
 class Robot:
     """The endpoint and the agent; the robot sends scans."""
 
-    def __init__(self, folder: Path, *arguments: str) -> None:
+    def __init__(self, folder: Path, subject: FormalizedRequirement) -> None:
         self.stops: list[bool] = []
         self.traces: Queue[dict[str, Any]] = Queue()
         self.errors = (folder / "errors.txt").open("w+")
         self.endpoint = Endpoint({"/scan": "sensor_msgs/LaserScan"}, self._receive)
-        bundle = write(folder / "r1_agent", texts(made()))
+        bundle = write(folder / "r1_agent", texts(subject))
         self.process = subprocess.Popen(
-            [sys.executable, str(bundle / "run.py"), "--url", self.endpoint.url, *arguments]
+            [sys.executable, str(bundle / "run.py"), "--url", self.endpoint.url]
             + ["--trace", TRACE],
             env={**os.environ, "AJPF_HOME": mcapl()},
             stdout=subprocess.DEVNULL,
@@ -108,8 +109,8 @@ def _stamp() -> dict[str, int]:
 
 
 @contextmanager
-def robot(folder: Path, *arguments: str) -> Iterator[Robot]:
-    running = Robot(folder, *arguments)
+def robot(folder: Path, subject: FormalizedRequirement | None = None) -> Iterator[Robot]:
+    running = Robot(folder, subject or made())
     try:
         yield running
     finally:
@@ -152,6 +153,49 @@ def test_in_doubt_the_robot_is_stopped(tmp_path: Path) -> None:
             if message is not None:
                 subject.endpoint.publish("/scan", message)
             subject.wait(subject.last(True))
+
+
+TWO = """
+[clock]
+tick = "100 ms"
+[signal.a]
+path = "/a.data"
+type = "std_msgs/Float64"
+unit = "1"
+[signal.b]
+path = "/b.data"
+type = "std_msgs/Float64"
+unit = "1"
+[proposition.near]
+expr = "a > 1"
+[proposition.allowed]
+expr = "b > 1"
+[proposition.stopped]
+expr = "a > 5"
+[interceptor]
+stop = "/gwendolen_control"
+command = "/c"
+output = "/o"
+period = "50 ms"
+[action.do_stopped]
+topic = "/gwendolen_control"
+type = "std_msgs/Bool"
+message = { data = true }
+"""
+
+
+@needs("java", "javac")
+@pytest.mark.slow
+def test_an_unknown_percept_stops_the_robot_even_if_no_plan_does(tmp_path: Path) -> None:
+    sentence = "whenever near & !allowed the sw shall eventually satisfy stopped"
+    with robot(tmp_path, made(TWO, sentence)) as subject:
+        subject.wait(lambda: subject.endpoint.subscribers("/a") == 1)
+        subject.endpoint.publish("/a", {"data": 0.5})
+        subject.wait(lambda: len(subject.stops) > 10)
+        assert subject.actions() == []
+        assert set(subject.stops) == {True}
+        subject.endpoint.publish("/b", {"data": 0.5})
+        subject.wait(subject.last(False))
 
 
 LATCH = """
@@ -202,7 +246,7 @@ def test_what_comes_and_goes_between_two_perceptions_is_perceived(tmp_path: Path
     )
     near, nothing, same = "[too_close]", "[]", "null"
     assert done.stdout.split() == [
-        *(near, nothing, near, nothing, near),  # unknown at first
+        *(nothing, same, near, nothing, near),  # unknown at first
         *(nothing, near, nothing, same),
     ]
 
