@@ -20,6 +20,7 @@ _MODULES: Mapping[str, str] = {
     "c": "c.monitor",
     "rust": "rust.monitor",
     "js": "javascript.monitor",
+    "java": "java.monitor",
     "ajpf": "ajpf.properties",
     "ajpf-bundle": "ajpf.bundle",
     "agent-runtime": "ajpf.runtime",

@@ -126,7 +126,6 @@ def _is_boolean(part: e.Expression, expected: bool) -> bool:
 
 
 _ALL_TRUTHS = frozenset({"prevOcc", "nextOcc", "preBool"})
-_LAST_TRUTH = frozenset({"persisted", "occurred", "persists", "occurs"})
 
 
 def _expected(part: e.Expression) -> list[tuple[e.Expression, bool]]:
@@ -144,7 +143,7 @@ def _expected(part: e.Expression) -> list[tuple[e.Expression, bool]]:
 
 
 def _takes_truth(name: str, arg: e.Expression, *, last: bool) -> bool:
-    if name in _ALL_TRUTHS or (name in _LAST_TRUTH and last):
+    if name in _ALL_TRUTHS or (name in e.COUNTING and last):
         return True
     return name not in _NUMERIC_PREDICATES | _NUMERIC_FUNCTIONS and _is_boolean(arg, expected=True)
 

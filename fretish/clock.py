@@ -6,11 +6,23 @@ import re
 from dataclasses import replace
 from enum import StrEnum
 from fractions import Fraction
+from math import ceil, floor
 from typing import assert_never
 
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
+from fretish.diagnostics.source import Span
+from fretish.expressions import (
+    COUNTING,
+    Call,
+    Expression,
+    Number,
+    Quantity,
+    children,
+    has_unit,
+    with_children,
+)
 from fretish.syntax import (
     SHAPES,
     Duration,
@@ -21,8 +33,9 @@ from fretish.syntax import (
     Timing,
     duration,
     timing_key,
+    with_expressions,
 )
-from fretish.units import nanoseconds
+from fretish.units import nanoseconds, number
 
 NANOSECONDS: dict[TimeUnit, int] = {
     "microsecond": 10**3,
@@ -31,6 +44,15 @@ NANOSECONDS: dict[TimeUnit, int] = {
     "minute": 60 * 10**9,
     "hour": 3600 * 10**9,
 }
+
+SYMBOLS: dict[str, TimeUnit] = {
+    "us": "microsecond",
+    "ms": "millisecond",
+    "s": "second",
+    "min": "minute",
+    "h": "hour",
+}
+"""The symbols of the units of time."""
 
 
 class TimeSource(StrEnum):
@@ -135,25 +157,76 @@ def in_ticks(sentence: Sentence, clock: Clock | None) -> int | Diagnostic | None
     if exact.denominator == 1:
         return int(exact)
     if clock.rounding is Rounding.EXACT:
-        return _inexact(bound, clock, exact)
+        return _inexact(_as_written(bound), bound.span, clock, exact)
     fewer = _fewer_is_stricter(sentence)
     if fewer is None:
         return _no_stricter_side(sentence, bound, clock, exact)
     ticks = int(exact) if fewer else int(exact) + 1
-    return ticks or _inexact(bound, clock, exact)
+    return ticks or _inexact(_as_written(bound), bound.span, clock, exact)
+
+
+def counts_in_ticks(sentence: Sentence, clock: Clock | None) -> Sentence | Diagnostic:
+    """The sentence with the durations in `persisted(500 ms, p)` and its like as numbers of ticks.
+
+    Returns:
+        F108 for a unit that is none of time; F307 where there is no whole number of ticks.
+    """
+    mistakes: list[Diagnostic] = []
+
+    def count(bound: Quantity) -> Number:
+        ticks = _ticks(bound, clock)
+        if isinstance(ticks, Diagnostic):
+            mistakes.append(ticks)
+            return Number("0", bound.span)
+        return Number(str(ticks), bound.span)
+
+    def rewritten(expression: Expression) -> Expression:
+        if not has_unit(expression):
+            return expression
+        inside = with_children(expression, [rewritten(each) for each in children(expression)])
+        if not isinstance(inside, Call) or inside.name not in COUNTING:
+            return inside
+        *bounds, last = inside.args
+        numbers = [count(each) if isinstance(each, Quantity) else each for each in bounds]
+        return replace(inside, args=(*numbers, last))
+
+    counted = with_expressions(sentence, rewritten)
+    return mistakes[0] if mistakes else counted
+
+
+def _ticks(bound: Quantity, clock: Clock | None) -> int | Diagnostic:
+    if bound.unit not in SYMBOLS:
+        return diagnostic("duration_of_unknown_unit", bound.span, word=bound.unit)
+    text = f"{bound.digits} {bound.unit}"
+    if clock is None:
+        return diagnostic("duration_without_tick", bound.span, duration=text)
+    if clock.period is None:
+        unit = SYMBOLS[bound.unit]
+        return diagnostic("messages_cannot_count_time", bound.span, clock=clock, unit=unit)
+    exact = number(bound.digits) * NANOSECONDS[SYMBOLS[bound.unit]] / clock.period
+    return int(exact) if exact.denominator == 1 else _inexact(text, bound.span, clock, exact)
+
+
+def whole_duration(length: Fraction, unit: TimeUnit, span: Span | None = None) -> Duration | None:
+    """The duration in the unit if that is whole, else in a smaller one; None if in none.
+
+    FRETish has whole numbers only: 1.5 seconds are 1500 milliseconds.
+    """
+    if length.denominator == 1:
+        return Duration(int(length), unit, span)
+    for smaller_unit in reversed(NANOSECONDS) if unit in NANOSECONDS else ():
+        amount = length * NANOSECONDS[unit] / NANOSECONDS[smaller_unit]
+        if NANOSECONDS[smaller_unit] < NANOSECONDS[unit] and amount.denominator == 1:
+            return Duration(int(amount), smaller_unit, span)
+    return None
 
 
 def in_unit(ticks: int, unit: TimeUnit, clock: Clock | None) -> Duration:
     """A number of ticks as a duration: in the unit if exact, else in a smaller unit or in ticks."""
     if unit == "tick" or clock is None or clock.period is None:
         return Duration(ticks, unit)
-    for smaller_unit in reversed(NANOSECONDS):
-        if NANOSECONDS[smaller_unit] > NANOSECONDS[unit]:
-            continue
-        amount, rest = divmod(ticks * clock.period, NANOSECONDS[smaller_unit])
-        if rest == 0:
-            return Duration(amount, smaller_unit)
-    return Duration(ticks, "tick")
+    length = Fraction(ticks * clock.period, NANOSECONDS[unit])
+    return whole_duration(length, unit) or Duration(ticks, "tick")
 
 
 def _fewer_is_stricter(sentence: Sentence) -> bool | None:
@@ -201,17 +274,23 @@ def duration_text(bound: Duration) -> str:
     return f"{bound.amount} {bound.unit}{'' if bound.amount == 1 else 's'}"
 
 
-def _inexact(bound: Duration, clock: Clock, exact: Fraction) -> Diagnostic:
+def _as_written(bound: Duration) -> str:
+    return bound.span.text if bound.span else duration_text(bound)
+
+
+def _inexact(duration: str, span: Span | None, clock: Clock, exact: Fraction) -> Diagnostic:
     assert clock.period is not None
+    whole = [count for count in (floor(exact), ceil(exact)) if count]
+    near = " or ".join(in_words(count * clock.period) for count in whole)
     return diagnostic(
         "inexact_duration",
-        bound.span,
-        duration=duration_text(bound),
+        span,
+        duration=duration,
         ticks=_exactly(exact),
         period=in_words(clock.period),
-        help="use a whole number of ticks, or a finer `tick`"
+        help=f"use a whole number of ticks ({near}), or a finer `tick`"
         if clock.rounding is Rounding.CONSERVATIVE
-        else "use a whole number of ticks, a finer `tick`, or "
+        else f"use a whole number of ticks ({near}), a finer `tick`, or "
         '`rounding = "conservative"` under `[clock]`',
     )
 
@@ -223,7 +302,7 @@ def _no_stricter_side(
     part = timing_key(sentence)
     if odds is not None and _fewer_asks_more(sentence.timing) is not None:
         part = odds.op
-    inexact = _inexact(bound, clock, exact)
+    inexact = _inexact(_as_written(bound), bound.span, clock, exact)
     return replace(
         inexact, message=f"{inexact.message}, and `{part}` has no stricter side to round to"
     )

@@ -15,9 +15,13 @@ from fretish.diagnostics.source import Source, Span
 from fretish.reading.toml_text import Tables, read, unknown_key
 
 FIELDS = (
-    "id", "title", "text", "parents", "rationale", "status", "verify", "params", "accept", "fret",
+    "id", "kind", "title", "text", "parents", "rationale", "status", "verify", "params", "accept",
+    "fret",
 )  # fmt: skip
 STATUSES = ("draft", "approved", "retired")
+ASSUMPTION = "assumption"
+KINDS = ("requirement", ASSUMPTION)
+"""A requirement demands something of the system, an assumption of its environment."""
 IDENTIFIER = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]*")
 """The id of a requirement."""
 _ID_LINE = re.compile(rf'^[ \t]*id[ \t]*=[ \t]*"(?P<id>{IDENTIFIER.pattern})"', re.MULTILINE)
@@ -41,6 +45,7 @@ class RequirementEntry:
     """Ids of hazards and of parent requirements."""
     rationale: str = ""
     status: str = "draft"
+    kind: str = KINDS[0]
     verify: tuple[str, ...] = ()
     """The planned verification methods."""
     params: Mapping[str, str] = field(default_factory=dict)
@@ -66,6 +71,11 @@ class RequirementEntry:
     def is_in_force(self) -> bool:
         """Whether the requirement is not retired."""
         return self.status != "retired"
+
+    @property
+    def is_assumption(self) -> bool:
+        """Whether it demands something of the environment."""
+        return self.kind == ASSUMPTION
 
     @property
     def is_free_text(self) -> bool:
@@ -159,6 +169,7 @@ def _requirement(
             parents=tuple(data.get("parents", ())),
             rationale=data.get("rationale", ""),
             status=data.get("status", "draft"),
+            kind=data.get("kind", KINDS[0]),
             verify=tuple(data.get("verify", ())),
             params=dict(data.get("params", {})),
             accept=dict(data.get("accept", {})),
@@ -211,6 +222,8 @@ def _fits(key: str, value: Any) -> bool:
             return isinstance(value, str) and IDENTIFIER.fullmatch(value) is not None
         case "status":
             return value in STATUSES
+        case "kind":
+            return value in KINDS
         case _:
             return isinstance(value, str)
 
@@ -224,6 +237,7 @@ def _bad_field(tables: Tables, key: str) -> Diagnostic:
         "fret": 'a table of texts: `{ project = "Rover" }`',
         "id": "letters, digits, `_`, `-` and `.` in quotes, beginning with a letter or digit",
         "status": f"one of {', '.join(STATUSES)}",
+        "kind": f"one of {', '.join(KINDS)}",
     }
     return diagnostic(
         "bad_field", tables.value(key), key=key, value=wanted.get(key, "a text in quotes")

@@ -145,6 +145,10 @@ class Iff:
     right: Expression
 
 
+COUNTING = frozenset({"persisted", "occurred", "persists", "occurs"})
+"""The predicates whose last argument is a truth value, and whose others count ticks."""
+
+
 @dataclass(frozen=True, slots=True)
 class Call:
     """`name(arg, ...)`: a function, or one of FRETish's temporal predicates."""

@@ -14,21 +14,23 @@ from fractions import Fraction
 from functools import cache
 from typing import Any, cast
 
-from lark import Lark, ParseTree, Token, v_args
-from lark.exceptions import UnexpectedCharacters, UnexpectedToken, VisitError
-from lark.visitors import Transformer_NonRecursive
-
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.checking import check_depth, check_names, check_response_kinds, check_value
+from fretish.clock import SYMBOLS, whole_duration
 from fretish.diagnostics.diagnostic import Code, Diagnostic, DiagnosticError
 from fretish.diagnostics.fixes import FixedText
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
-from fretish.error_rules.operators import unknown_character
-from fretish.error_rules.unexpected import Lexeme, Unexpected
 from fretish.reading.grammars import Grammar
-from fretish.syntax_errors import bad_duration, bad_probability, explain
+from fretish.reading.lalr import (
+    Parser,
+    SyntaxTreeNode,
+    Token,
+    UnexpectedCharacterError,
+    UnexpectedTokenError,
+    build,
+)
 from fretish.units import NAMES, number
 from fretish.units import split as split_quantity
 
@@ -52,7 +54,7 @@ def parse_value(text: Span) -> e.Expression | Diagnostic:
     if isinstance(parse_tree, Diagnostic):
         return parse_tree
     with _spans_in(text):  # Callbacks of an expression raise no error.
-        value = cast(e.Expression, _TreeBuilder().transform(parse_tree))
+        value = cast(e.Expression, build(parse_tree, _TreeBuilder()))
     return next(check_value(value, text), value)
 
 
@@ -113,31 +115,33 @@ def _parse_sentence(text: Span) -> s.Sentence | Diagnostic:
     return tree if isinstance(tree, Diagnostic) else _build(tree, text)
 
 
-def _sentence_tree(text: Span) -> ParseTree | Diagnostic:
+def _sentence_tree(text: Span) -> list[SyntaxTreeNode] | Diagnostic:
     """The parse tree of a sentence, or a syntax error."""
     if not text.text.strip():
         return diagnostic("no_sentence", text.part(0, 0))
     return _parse_tree(text, "start")
 
 
-def _parse_tree(text: Span, start: str) -> ParseTree | Diagnostic:
+def _parse_tree(text: Span, start: str) -> list[SyntaxTreeNode] | Diagnostic:
     """The parse tree of a text for one start rule of the grammar, or a syntax error."""
     try:
-        return _lark().parse(text.text, start=start)
-    except UnexpectedToken as error:
-        return _unexpected(error, text)
-    except UnexpectedCharacters as error:
-        return unknown_character(text, error.pos_in_stream or 0)
+        return _parser().parse(text.text, start)
+    except UnexpectedTokenError as error:
+        from fretish.syntax_errors import unexpected_word  # none in most texts
+
+        return unexpected_word(error, text)
+    except UnexpectedCharacterError as error:
+        from fretish.error_rules.operators import unknown_character
+
+        return unknown_character(text, error.position)
 
 
-def _build(tree: ParseTree, text: Span) -> s.Sentence | Diagnostic:
+def _build(tree: list[SyntaxTreeNode], text: Span) -> s.Sentence | Diagnostic:
     try:
         with _spans_in(text):
-            return cast(s.Sentence, _TreeBuilder().transform(tree))
-    except VisitError as error:
-        if isinstance(error.orig_exc, _ParseError):
-            return error.orig_exc.diagnostic
-        raise
+            return cast(s.Sentence, build(tree, _TreeBuilder()))
+    except _ParseError as error:
+        return error.diagnostic
 
 
 def _check(sentence: s.Sentence) -> Iterator[Diagnostic]:
@@ -196,14 +200,11 @@ def _spans_in(text: Span) -> Iterator[None]:
 
 
 def _span(first: Token, last: Token | None = None) -> Span:
-    start, end = first.start_pos, (last or first).end_pos
-    assert start is not None
-    assert end is not None
-    return _text.get().part(start, end)
+    return _text.get().part(first.start_pos, (last or first).end_pos)
 
 
 @cache
-def _lark() -> Lark:
+def _parser() -> Parser:
     return GRAMMAR.parser()
 
 
@@ -215,16 +216,10 @@ _QUANTITY = (
     rf" WHITE_SPACE? /{_POWERED}(?:[*\/]{_POWERED})*/"
 )
 """A number and its unit. The lexer has a list of all units, so a name is never read as a unit."""
-_OPTIONS = {
-    "start": ["start", "value"],
-    "lexer": "basic",
-    "propagate_positions": True,
-    "maybe_placeholders": False,
-}
-GRAMMAR = Grammar("fretish", "grammar", _OPTIONS, _QUANTITY)
+GRAMMAR = Grammar("fretish", "grammar", ("start", "value"), _QUANTITY)
 
 
-def _meta_span(meta: Any) -> Span:
+def _meta_span(meta: SyntaxTreeNode) -> Span:
     return _text.get().part(meta.start_pos, meta.end_pos)
 
 
@@ -234,7 +229,7 @@ def _trees(children: list[Any]) -> list[Any]:
 
 
 def _scope_builder(kind: s.ScopeKind) -> Callable[..., s.Scope]:
-    def build(self: object, meta: Any, children: list[Any]) -> s.Scope:
+    def build(self: object, meta: SyntaxTreeNode, children: list[Any]) -> s.Scope:
         (mode,) = _trees(children)
         return s.Scope(kind, mode, _meta_span(meta))
 
@@ -242,7 +237,7 @@ def _scope_builder(kind: s.ScopeKind) -> Callable[..., s.Scope]:
 
 
 def _timing_builder(kind: Callable[..., s.Timing]) -> Callable[..., _TimingPart]:
-    def build(self: object, meta: Any, children: list[Any]) -> _TimingPart:
+    def build(self: object, meta: SyntaxTreeNode, children: list[Any]) -> _TimingPart:
         return _TimingPart((kind(*_trees(children)), _meta_span(meta)))
 
     return build
@@ -260,80 +255,79 @@ class _ComponentPart(tuple[str, Span, bool]):
     __slots__ = ()
 
 
-@v_args(meta=True)
-class _TreeBuilder(Transformer_NonRecursive[Token, Any]):
-    """Builds a `Sentence` from a parse tree, without recursion, so that any depth is possible."""
+class _TreeBuilder:
+    """Builds a `Sentence` from a parse tree, a method for each kind of node."""
 
     # Names and operands
 
-    def identifier(self, meta: Any, children: list[Token]) -> e.Name:
+    def identifier(self, meta: SyntaxTreeNode, children: list[Token]) -> e.Name:
         (token,) = children
         text = str(token)
         return e.Name(text[1:-1] if text.startswith('"') else text, _span(token))
 
-    def name(self, meta: Any, children: list[e.Name]) -> e.Name:
+    def name(self, meta: SyntaxTreeNode, children: list[e.Name]) -> e.Name:
         return children[0]
 
-    def mode_name(self, meta: Any, children: list[Token]) -> e.Name:
+    def mode_name(self, meta: SyntaxTreeNode, children: list[Token]) -> e.Name:
         return e.Name(str(children[0]), _span(children[0]))
 
-    def named_mode(self, meta: Any, children: list[Any]) -> e.Name:
+    def named_mode(self, meta: SyntaxTreeNode, children: list[Any]) -> e.Name:
         return cast(e.Name, _trees(children)[0])
 
-    def number(self, meta: Any, children: list[Token]) -> e.Number:
+    def number(self, meta: SyntaxTreeNode, children: list[Token]) -> e.Number:
         return e.Number(str(children[0]), _span(children[0]))
 
-    def quantity(self, meta: Any, children: list[Token]) -> e.Quantity:
+    def quantity(self, meta: SyntaxTreeNode, children: list[Token]) -> e.Quantity:
         digits, unit = split_quantity(str(children[0]))
         return e.Quantity(digits, unit, _span(children[0]))
 
-    def truth(self, meta: Any, children: list[Token]) -> e.Truth:
+    def truth(self, meta: SyntaxTreeNode, children: list[Token]) -> e.Truth:
         return e.Truth(children[0] == "true")
 
-    def call(self, meta: Any, children: list[Any]) -> e.Call:
+    def call(self, meta: SyntaxTreeNode, children: list[Any]) -> e.Call:
         name, *args = children
         return e.Call(name.id, tuple(args), _meta_span(meta))
 
-    def occurrence(self, meta: Any, children: list[Any]) -> e.Call:
+    def occurrence(self, meta: SyntaxTreeNode, children: list[Any]) -> e.Call:
         past = any(isinstance(c, Token) and c.type == "PREVIOUS" for c in children)
         return e.Call("prevOcc" if past else "nextOcc", tuple(_trees(children)), _meta_span(meta))
 
     # Operators
 
-    def not_(self, meta: Any, children: list[e.Expression]) -> e.Expression:
+    def not_(self, meta: SyntaxTreeNode, children: list[e.Expression]) -> e.Expression:
         return e.Not(children[0])
 
-    def both(self, meta: Any, children: list[e.Expression]) -> e.Expression:
+    def both(self, meta: SyntaxTreeNode, children: list[e.Expression]) -> e.Expression:
         return e.both(*children)
 
-    def either(self, meta: Any, children: list[e.Expression]) -> e.Expression:
+    def either(self, meta: SyntaxTreeNode, children: list[e.Expression]) -> e.Expression:
         return e.either(*children)
 
-    def xor(self, meta: Any, children: list[Any]) -> e.Expression:
+    def xor(self, meta: SyntaxTreeNode, children: list[Any]) -> e.Expression:
         return e.Xor(*_trees(children))
 
-    def implies(self, meta: Any, children: list[e.Expression]) -> e.Expression:
+    def implies(self, meta: SyntaxTreeNode, children: list[e.Expression]) -> e.Expression:
         return e.Implies(*children)
 
-    def iff(self, meta: Any, children: list[e.Expression]) -> e.Expression:
+    def iff(self, meta: SyntaxTreeNode, children: list[e.Expression]) -> e.Expression:
         return e.Iff(*children)
 
-    def if_then(self, meta: Any, children: list[Any]) -> e.Expression:
+    def if_then(self, meta: SyntaxTreeNode, children: list[Any]) -> e.Expression:
         return e.Implies(*_trees(children))
 
-    def compare(self, meta: Any, children: list[Token]) -> str:
+    def compare(self, meta: SyntaxTreeNode, children: list[Token]) -> str:
         return str(children[0])
 
-    def comparison(self, meta: Any, children: list[Any]) -> e.Expression:
+    def comparison(self, meta: SyntaxTreeNode, children: list[Any]) -> e.Expression:
         left, op, right = children
         return e.Comparison(op, left, right, _meta_span(meta))
 
-    def arithmetic(self, meta: Any, children: list[Any]) -> e.Expression:
+    def arithmetic(self, meta: SyntaxTreeNode, children: list[Any]) -> e.Expression:
         left, op, right = children
         operator = cast(e.ArithmeticOperator, str(op).lower())
         return e.Arithmetic(operator, left, right, _meta_span(meta))
 
-    def negation(self, meta: Any, children: list[Any]) -> e.Expression:
+    def negation(self, meta: SyntaxTreeNode, children: list[Any]) -> e.Expression:
         return e.Negation(_trees(children)[0], _meta_span(meta))
 
     # Parts of the sentence
@@ -358,7 +352,7 @@ class _TreeBuilder(Transformer_NonRecursive[Token, Any]):
     until = _timing_builder(s.Until)
     before = _timing_builder(s.Before)
 
-    def item(self, meta: Any, children: list[Any]) -> s.Condition:
+    def item(self, meta: SyntaxTreeNode, children: list[Any]) -> s.Condition:
         word, expression, *truth = children[0], children[1], *children[2:]
         negated = (word.type == "UNLESS") != any(token.lower() == "false" for token in truth)
         kind = s.ConditionKind.HOLDING if word.type == "WHENEVER" else s.ConditionKind.TRIGGER
@@ -366,10 +360,10 @@ class _TreeBuilder(Transformer_NonRecursive[Token, Any]):
             kind, e.Not(expression) if negated else expression, word.lower(), _meta_span(meta)
         )
 
-    def joined(self, meta: Any, children: list[Any]) -> tuple[bool, s.Condition]:
+    def joined(self, meta: SyntaxTreeNode, children: list[Any]) -> tuple[bool, s.Condition]:
         return (children[0] != children[-1] and children[0].type == "OR", children[-1])
 
-    def condition(self, meta: Any, children: list[Any]) -> s.Condition:
+    def condition(self, meta: SyntaxTreeNode, children: list[Any]) -> s.Condition:
         """Join condition items: `and` and `or` are left-associative with equal precedence.
 
         One item that is a trigger makes the whole condition a trigger.
@@ -383,33 +377,47 @@ class _TreeBuilder(Transformer_NonRecursive[Token, Any]):
                 kind, word = item.kind, item.word
         return s.Condition(kind, expression, word, _meta_span(meta))
 
-    def component(self, meta: Any, children: list[Any]) -> _ComponentPart:
+    def component(self, meta: SyntaxTreeNode, children: list[Any]) -> _ComponentPart:
         (name,) = _trees(children)
         article = any(isinstance(c, Token) and c.type == "THE" for c in children)
         return _ComponentPart((name.id, name.span, article))
 
-    def probability(self, meta: Any, children: list[Any]) -> s.Probability:
+    def probability(self, meta: SyntaxTreeNode, children: list[Any]) -> s.Probability:
         _, _, op, *digits = children
         text = "".join(digits)
         bound = _number(text)
         impossible = bound == 0 if op == "<" else op == ">" and bound == 1
         if bound is None or impossible or not 0 <= bound <= 1:
+            from fretish.syntax_errors import bad_probability
+
             raise _ParseError(bad_probability(_meta_span(meta)))
         return s.Probability(op, bound, text)
 
-    def duration(self, meta: Any, children: list[Token]) -> s.Duration:
-        *digits, unit = children
-        text = "".join(digits)
-        if not text.isdigit() or len(text) > 15:
-            digits_span = _span(children[0], digits[-1])
-            unit_name = f"{_UNITS[unit.type]}s"
-            raise _ParseError(bad_duration(digits_span, unit_name, _meta_span(meta)))
-        return s.Duration(int(text), _UNITS[unit.type], _meta_span(meta))
+    def duration(self, meta: SyntaxTreeNode, children: list[Token]) -> s.Duration:
+        *sign, last = children
+        if last.type == "QUANTITY":
+            digits, symbol = split_quantity(last)
+            end = len(last)
+            if symbol not in SYMBOLS:
+                from fretish.syntax_errors import bad_unit
 
-    def value(self, meta: Any, children: list[e.Expression]) -> e.Expression:
+                raise _ParseError(bad_unit(_span(last).part(end - len(symbol), end)))
+            unit = SYMBOLS[symbol]
+        else:
+            digits, unit = sign.pop(), _UNITS[last.type]
+        is_plain = not sign and "e" not in digits.lower()  # FRET reads 2e1 as 2
+        length = _number(digits) if is_plain else None
+        whole = None if length is None else whole_duration(length, unit, _meta_span(meta))
+        if whole is None or whole.amount >= 10**15:
+            from fretish.syntax_errors import bad_duration
+
+            raise _ParseError(bad_duration(digits, _meta_span(meta)))
+        return whole
+
+    def value(self, meta: SyntaxTreeNode, children: list[e.Expression]) -> e.Expression:
         return children[0]
 
-    def start(self, meta: Any, children: list[Any]) -> s.Sentence:
+    def start(self, meta: SyntaxTreeNode, children: list[Any]) -> s.Sentence:
         *parts, response = _trees(children)
         by_type = {type(part): part for part in parts}
         timing, timing_span = by_type.get(_TimingPart, (s.Eventually(explicit=False), None))
@@ -434,59 +442,3 @@ def _number(digits: str) -> Fraction | None:
         return number(digits)
     except ValueError:
         return None
-
-
-# Syntax errors ---------------------------------------------------------------------------
-
-
-def _unexpected(error: UnexpectedToken, text: Span) -> Diagnostic:
-    token: Token = error.token
-    before = _previous_token(token, text)
-    if token.type == "QUANTITY" and "NUMBER" in (error.accepts or error.expected):
-        in_duration = before is not None and before.type in ("WITHIN", "FOR", "AFTER")
-        return (
-            explain(_unit_error(token, text))
-            if in_duration
-            else bad_probability(_lexeme(token, text).span)
-        )
-    return explain(
-        Unexpected(
-            _lexeme(token, text),
-            _lexeme(before, text) if before is not None else None,
-            frozenset(error.accepts or error.expected),
-            text,
-        )
-    )
-
-
-def _unit_error(token: Token, text: Span) -> Unexpected:
-    """The error of a duration in an SI unit, `within 5 s`: FRETish requires `seconds`."""
-    digits, unit = split_quantity(str(token))
-    start, end = token.start_pos, token.end_pos
-    assert start is not None
-    assert end is not None
-    return Unexpected(
-        Lexeme("ID", text.part(end - len(unit), end)),
-        Lexeme("NUMBER", text.part(start, start + len(digits))),
-        frozenset(_UNITS),
-        text,
-    )
-
-
-def _previous_token(token: Token, text: Span) -> Token | None:
-    """The token before the one at which the parser stopped."""
-    before = None
-    for word in _lark().lex(text.text):
-        if token.type != "$END" and word.start_pos == token.start_pos:
-            break
-        before = word
-    return before
-
-
-def _lexeme(token: Token, text: Span) -> Lexeme:
-    if token.type == "$END":
-        end = len(text.text.rstrip())
-        return Lexeme(token.type, text.part(end, end))
-    assert token.start_pos is not None
-    assert token.end_pos is not None
-    return Lexeme(token.type, text.part(token.start_pos, token.end_pos))

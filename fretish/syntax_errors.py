@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from fractions import Fraction
 
 from fretish.diagnostics.diagnostic import Diagnostic, suggestion
 from fretish.diagnostics.fixes import Fix, removal
@@ -31,9 +30,10 @@ from fretish.error_rules.order import (
     superfluous_article,
     wrong_timing,
 )
-from fretish.error_rules.unexpected import STARTS_EXPRESSION, Unexpected, not_fretish
+from fretish.error_rules.unexpected import STARTS_EXPRESSION, Lexeme, Unexpected, not_fretish
 from fretish.keywords import KEYWORDS
-from fretish.units import number, unit, unknown_unit
+from fretish.reading.lalr import END, Token, UnexpectedTokenError
+from fretish.units import unit, unknown_unit
 
 _GROUPS: tuple[tuple[str, frozenset[str]], ...] = (
     ("a scope (`in m`, `before m`, ...)", frozenset({"DURING", "EXCEPT", "ONLY", "WHILE"})),
@@ -70,11 +70,28 @@ _WEAKER = ("can", "may", "might", "could", "would", "has", "needs")
 _TWO_WORDS = re.compile(
     r"(?!(?:if|not|at)\b)[a-z]\w*\s+(?!(?:and|or|xor|mod|implies|iff|is)\b)[a-z]", re.IGNORECASE
 )
-_MICROSECONDS = {
-    "microseconds": 1, "milliseconds": 10**3, "seconds": 10**6, "minutes": 60 * 10**6,
-    "hours": 3600 * 10**6,
-}  # fmt: skip
-"""Unit of time → its length in microseconds."""
+
+
+def unexpected_word(error: UnexpectedTokenError, text: Span) -> Diagnostic:
+    """The diagnostic of the first word that the grammar does not allow at its place."""
+    token, before = error.token, error.previous
+    if token.type == "QUANTITY" and "NUMBER" in error.accepts:
+        return bad_probability(_lexeme(token, text).span)
+    return explain(
+        Unexpected(
+            _lexeme(token, text),
+            _lexeme(before, text) if before is not None else None,
+            error.accepts,
+            text,
+        )
+    )
+
+
+def _lexeme(token: Token, text: Span) -> Lexeme:
+    if token.type == END:
+        end = len(text.text.rstrip())
+        return Lexeme(token.type, text.part(end, end))
+    return Lexeme(token.type, text.part(token.start_pos, token.end_pos))
 
 
 def explain(unexpected: Unexpected) -> Diagnostic:
@@ -86,36 +103,21 @@ def explain(unexpected: Unexpected) -> Diagnostic:
     return _does_not_fit(unexpected)
 
 
-def bad_duration(span: Span, unit: str, whole: Span) -> Diagnostic:
-    """F108 for a number that is negative, fractional or in scientific notation.
+def bad_duration(digits: str, whole: Span) -> Diagnostic:
+    """F108 for a duration that is negative, too long, or not whole in any unit of FRETish."""
+    if whole.text.startswith("-"):
+        return diagnostic("negative_duration", whole)
+    if digits.isdigit() or len(digits) > 60:
+        return diagnostic("duration_too_long", whole)
+    return diagnostic("duration_not_whole", whole, text=whole.text)
 
-    Args:
-        span: the span of the number.
-        unit: FRETish's name of the unit, in the plural.
-        whole: the span of the number and its unit.
-    """
-    if span.text.startswith("-"):
-        return diagnostic("negative_duration", span)
-    if span.text.isdigit():
-        return diagnostic("duration_too_long", span)
-    fix = _whole(span.text, unit, whole)
+
+def bad_unit(span: Span) -> Diagnostic:
+    """F108 for a word that is not a unit of time."""
+    fix = _unit_fix(span)
     if fix is not None:
-        return diagnostic("duration_of_smaller_unit", span, text=span.text, fix=fix)
-    return diagnostic("duration_not_whole", span, text=span.text)
-
-
-def _whole(digits: str, unit: str, whole: Span) -> Fix | None:
-    """The fix with the largest unit in which the duration is a whole number, or None."""
-    size = _MICROSECONDS.get(unit)
-    try:
-        length = (number(digits) or Fraction(1, 3)) * (size or Fraction(1, 3))
-    except ValueError:
-        return None
-    for name, other in reversed(_MICROSECONDS.items()) if size else ():
-        count = length / other
-        if count.denominator == 1 and count < 10**15:
-            return Fix(whole, f"{count} {name}", is_safe=True)
-    return None
+        return diagnostic("misspelt_unit", span, word=span.text, fix=fix)
+    return diagnostic("duration_of_unknown_unit", span, word=span.text)
 
 
 def bad_probability(span: Span) -> Diagnostic:
@@ -131,10 +133,7 @@ def _unit(u: Unexpected) -> Diagnostic | None:
         return None
     if u.lexeme.kind != "ID":
         return diagnostic("duration_without_unit", u.lexeme.span)
-    fix = _unit_fix(u.lexeme.span)
-    if fix is not None:
-        return diagnostic("misspelt_unit", u.lexeme.span, word=u.lexeme.word, fix=fix)
-    return diagnostic("duration_of_unknown_unit", u.lexeme.span, word=u.lexeme.word)
+    return bad_unit(u.lexeme.span)
 
 
 def _measured(u: Unexpected) -> Diagnostic | None:
@@ -159,7 +158,7 @@ def _number(u: Unexpected) -> Diagnostic | None:
     """F108 for a duration that does not begin with a number."""
     if u.previous is None or u.previous.kind not in ("WITHIN", "FOR", "AFTER"):
         return None
-    if not u.accepts <= {"NUMBER", "MINUS"}:
+    if not u.accepts <= {"NUMBER", "MINUS", "QUANTITY"}:
         return None
     return diagnostic("duration_without_number", u.lexeme.span, previous=u.previous.word)
 

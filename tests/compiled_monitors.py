@@ -18,9 +18,10 @@ from fretc.verification.compiled.plan import Executable, Language, ParsedSource,
 from fretc.verification.compiled.text import UnexpectedLayoutError
 from fretc.verification.compiled.tools import ToolError
 from fretc.verification.compiled.verifying import explored
+from fretc.verification.java import language as java
 from fretc.verification.javascript import language as javascript
 from fretc.verification.rust import language as rust
-from tests import c_monitors, node, rust_monitors
+from tests import c_monitors, java_monitors, node, rust_monitors
 from tests.c_monitors import Reading, Rows, Source
 
 P = ParamSpec("P")
@@ -146,7 +147,7 @@ _SHARED = (
     (r"(?<= )[1-9]\d*(?=\)|;|\)| })", "9"), (r"\+ 1", "+ 2"), (r"(?<= )0;", "1;"),
     (r"-1;", "0;"), (r"since_1", "since_2"), (r"since_2", "since_1"),
 )  # fmt: skip
-_BITWISE = ((r"(?<!word) & (?!bit|~)", " | "), (r" \| (?!bit)", " & "))
+_BITWISE = ((r"(?<!word) & (?!bit|~|\(1 <<)", " | "), (r" \| (?!bit)", " & "))
 """Not of rings, which are as fretc writes them."""
 
 
@@ -178,6 +179,19 @@ def _told_by_rust(
     return rust_monitors.outcomes(
         folder, [monitor.text], [(0, rows)], lints=["--cap-lints", "warn"]
     )[0]
+
+
+@once
+def given_java(*requirements: FormalizedRequirement) -> SourceText:
+    """What `--emit java` writes for them."""
+    text = java_monitors.monitor(*requirements)
+    return SourceText(f"{java_monitors.class_of(text)}.java", text)
+
+
+def _told_by_java(
+    folder: Path, monitor: SourceText, requirement: FormalizedRequirement, rows: Rows
+) -> list[list[c_monitors.Outcome]]:
+    return java_monitors.outcomes(folder, [monitor.text], [(0, rows)])[0]
 
 
 @once
@@ -238,4 +252,13 @@ JAVASCRIPT = Tongue(
      (r"(?m)^  approximation\.\w+ = .*;$", "")),
     "node", _told_by_javascript,
 )  # fmt: skip
-TONGUES = {each.name: each for each in (C, RUST, JAVASCRIPT)}
+JAVA = Tongue(
+    "java", java, given_java,
+    (r"(?m)// .*$(?!\n +public final Outcome)", "// mine\n/* too */"),
+    "private static final class Literals {", "\n}\n",
+    (*_SHARED, *_BITWISE, (r"!= Truth", "== Truth"), (r"(?<=\? )outcomes", "null"),
+     (r"= (\d+|-1);", "= 7;"), (r"advance1", "tell1"),
+     (r"(?m)^ +(this|reading)\.\w+ = .*;$", "")),
+    "javac", _told_by_java,
+)  # fmt: skip
+TONGUES = {each.name: each for each in (C, RUST, JAVA, JAVASCRIPT)}

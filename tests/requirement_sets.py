@@ -74,7 +74,9 @@ def conflicts(analysis: Analysis) -> list[tuple[str, ...]]:
 
 
 def synthesized(
-    requirements: Sequence[FormalizedRequirement], assumptions: Sequence[FormalizedRequirement] = ()
+    requirements: Sequence[FormalizedRequirement],
+    assumptions: Sequence[FormalizedRequirement] = (),
+    outputs: Sequence[str] = OUTPUTS,
 ) -> bool:
     """What Spot says of the future-time formulas."""
     kept, given = (
@@ -82,7 +84,7 @@ def synthesized(
         for some in (requirements, assumptions)
     )
     formula = f"({given}) -> ({kept})"
-    return bool(spot.solve_game(spot.ltl_to_game(formula, list(OUTPUTS))))
+    return bool(spot.solve_game(spot.ltl_to_game(formula, list(outputs))))
 
 
 def satisfiable(requirements: Sequence[FormalizedRequirement]) -> bool:

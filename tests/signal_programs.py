@@ -20,6 +20,7 @@ from compiler.emit import TARGETS
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.signals.policies import policy
 from compiler.targets.target import TargetOptions
+from tests import java_monitors
 from tests.c_monitors import CHECKED, STRICT
 from tests.effort import FULL
 from tests.programs import installed
@@ -427,4 +428,171 @@ def _build_javascript(folder: Path, text: str) -> Sequence[str | Path]:
 
 
 JAVASCRIPT = Language("js", _in_javascript, _JS_TICK, _build_javascript)
-LANGUAGES = (c(), RUST, JAVASCRIPT)
+
+# Java -------------------------------------------------------------------------------------------
+
+_JAVA = """
+import java.io.BufferedOutputStream;
+import java.io.DataOutputStream;
+import java.io.IOException;
+import java.nio.ByteBuffer;
+import java.nio.ByteOrder;
+import java.nio.charset.StandardCharsets;
+
+public final class Main {
+    private static final MonitorsSignals.Samples samples = new MonitorsSignals.Samples();
+    private static final Monitors.Inputs inputs = new Monitors.Inputs();
+    private static final DataOutputStream out =
+        new DataOutputStream(new BufferedOutputStream(System.out));
+    private static ByteBuffer data;
+    private static MonitorsSignals.Elements array;
+    private static MonitorsSignals.Number field;
+    private static double least;
+    private static double most;
+    private static long at;
+
+    private static void given() {
+        int start = data.position();
+        int kind = data.get();
+        int count = data.get();
+        least = data.getDouble();
+        most = data.getDouble();
+        at = data.getLong();
+        array = elements(kind, count, data.slice().order(ByteOrder.nativeOrder()));
+        field = elements(kind, 1, data.slice().order(ByteOrder.nativeOrder())).element(0);
+        data.position(start + 90);
+    }
+
+    private static MonitorsSignals.Elements elements(int kind, int count, ByteBuffer from) {
+        float[] floats = new float[count];
+        double[] doubles = new double[count];
+        boolean[] truths = new boolean[count];
+        byte[] bytes = new byte[count];
+        short[] shorts = new short[count];
+        int[] ints = new int[count];
+        long[] longs = new long[count];
+        for (int i = 0; i < count; i++) {
+            switch (kind) {
+                case 0: floats[i] = from.getFloat(); break;
+                case 1: doubles[i] = from.getDouble(); break;
+                case 2: truths[i] = from.get() != 0; break;
+                case 3: case 4: bytes[i] = from.get(); break;
+                case 5: case 6: shorts[i] = from.getShort(); break;
+                case 7: case 8: ints[i] = from.getInt(); break;
+                default: longs[i] = from.getLong();
+            }
+        }
+        switch (kind) {
+            case 0: return MonitorsSignals.elements(floats);
+            case 1: return MonitorsSignals.elements(doubles);
+            case 2: return MonitorsSignals.elements(truths);
+            case 3: return MonitorsSignals.elements(bytes);
+            case 4: return MonitorsSignals.unsignedElements(bytes);
+            case 5: return MonitorsSignals.elements(shorts);
+            case 6: return MonitorsSignals.unsignedElements(shorts);
+            case 7: return MonitorsSignals.elements(ints);
+            case 8: return MonitorsSignals.unsignedElements(ints);
+            case 9: return MonitorsSignals.elements(longs);
+            default: return MonitorsSignals.unsignedElements(longs);
+        }
+    }
+
+    private static void put(MonitorsSignals.Number number) throws IOException {
+        ByteBuffer record = ByteBuffer.allocate(17).order(ByteOrder.nativeOrder());
+        if (number != null) {
+            boolean isWhole = number.magnitude() != 0L;
+            record.putDouble(number.value()).putLong(number.magnitude());
+            record.put((byte) (number.isSingle() ? 1 : isWhole ? 3 : 2));
+        }
+        out.write(record.array());
+    }
+
+    private static void say(Monitors.Truth truth) throws IOException {
+        out.writeByte(truth.ordinal());
+    }
+
+    public static void main(String[] arguments) throws IOException {
+        data = ByteBuffer.wrap(System.in.readAllBytes()).order(ByteOrder.nativeOrder());
+        run();
+        out.flush();
+    }
+"""
+_JAVA_SIGNAL = """        given();
+        samples.{name}.number = MonitorsSignals.sample_{name}({kind}{rest});
+        samples.{name}.at = at;
+        put(samples.{name}.number);
+        samples.{name}.number = at < 0 ? null : samples.{name}.number;
+"""
+
+
+def _in_java(cases: Sequence[Case]) -> str:
+    functions = "".join(
+        f"    private static void case{i}() throws IOException {{\n"
+        f"{''.join(_calls(case, i, _JAVA_SIGNAL))}"
+        f"        MonitorsSignals.instant(samples, {NOW}L, inputs);\n"
+        f"        say(inputs.p{i});\n    }}\n"
+        for i, case in enumerate(cases)
+    )
+    calls = "".join(
+        f"        for (int i = 0; i < {len(case.rows)}; i++) {{ case{i}(); }}\n"
+        for i, case in enumerate(cases)
+    )
+    head = "    private static void run() throws IOException {\n"
+    return f"{_JAVA}{functions}{head}{calls}    }}\n}}\n"
+
+
+_JAVA_TICK = f"""{_JAVA}
+    private static void run() throws IOException {{
+        MonitorsSignals.Held held = new MonitorsSignals.Held();
+        MonitorsSignals.Held holding = new MonitorsSignals.Held();
+        Monitors.Inputs tick = new Monitors.Inputs();
+        boolean isFirst = true;
+        while (data.hasRemaining()) {{
+            int length = data.get() & 0xff;
+            byte[] text = new byte[16];
+            data.get(text);
+            double number = data.getDouble();
+            if (length == 255) {{
+                MonitorsSignals.assume(tick);
+                say(tick.p0);
+                say(tick.p1);
+                say(tick.p2);
+                say(tick.p3);
+                held.p3_for_1 = Monitors.Truth.UNKNOWN;
+                isFirst = true;
+                continue;
+            }}
+            String word = new String(text, 0, length, StandardCharsets.UTF_8);
+            samples.mode.number = MonitorsSignals.sample_mode(word);
+            samples.gear.number = MonitorsSignals.sample_gear(number);
+            MonitorsSignals.instant(samples, 0L, held, inputs);
+            MonitorsSignals.holding(samples, 0L, held, holding);
+            say(inputs.p0);
+            say(inputs.p1);
+            say(inputs.p2);
+            say(holding.p3_for_1);
+            held.p3_for_1 = holding.p3_for_1;
+            MonitorsSignals.instant(samples, 0L, held, inputs);
+            say(inputs.p3);
+            Monitors.Inputs next = new Monitors.Inputs();
+            MonitorsSignals.instant(samples, 0L, held, next);
+            if (isFirst) {{
+                tick = next;
+            }} else {{
+                MonitorsSignals.gather(tick, next);
+            }}
+            isFirst = false;
+        }}
+    }}
+}}
+"""
+
+
+def _build_java(folder: Path, text: str) -> Sequence[str | Path]:
+    (folder / "Main.java").write_text(text, encoding="utf-8")
+    assert java_monitors.compiled(folder) == ""
+    return [installed("java"), *java_monitors.QUICK, "-cp", folder / "classes", "Main"]
+
+
+JAVA = Language("java", _in_java, _JAVA_TICK, _build_java)
+LANGUAGES = (c(), RUST, JAVASCRIPT, JAVA)

@@ -12,6 +12,7 @@ from __future__ import annotations
 from dataclasses import field
 from decimal import Decimal
 from functools import cache
+from pathlib import Path
 from typing import Literal, cast
 
 from lark import Lark, Token, Tree
@@ -27,7 +28,6 @@ from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source, Span
-from fretish.reading.grammars import Grammar
 from fretish.reading.limits import with_budget
 
 Sign = Literal["+", "-"]
@@ -109,12 +109,8 @@ def _read(source: Source) -> Agent | Diagnostic:
 
 @cache
 def _lark() -> Lark:
-    return GRAMMAR.parser()
-
-
-GRAMMAR = Grammar(
-    "compiler.agents", "gwendolen", {"lexer": "contextual", "propagate_positions": True}
-)
+    grammar = Path(__file__).with_name("gwendolen.lark").read_text(encoding="utf-8")
+    return Lark(grammar, parser="lalr", lexer="contextual", propagate_positions=True)
 
 
 class _AgentReader:

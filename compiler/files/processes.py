@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import os
-import pickle
-import traceback
 from collections.abc import Callable
 from typing import Any
 
@@ -30,12 +28,16 @@ def reply(function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> tuple[b
     except MemoryError:
         return False, MemoryError()  # there may be no memory for more
     except Exception as error:
+        import traceback  # a short command never needs it
+
         error.add_note(traceback.format_exc())
         return False, _sendable(error)
 
 
 def _sendable(error: Exception) -> Exception:
     """The error, or a RuntimeError with its text if the error cannot be pickled."""
+    import pickle
+
     try:
         pickle.loads(pickle.dumps(error))
     except Exception:

@@ -45,6 +45,7 @@ def _environment() -> Environment:
         comment=comment,
         c_comment=c_comment,
         c_remark=c_remark,
+        java_comment=java_comment,
         js=script,
         json=to_json,
         data=data,
@@ -101,6 +102,14 @@ def _harmless(text: str) -> str:
     """The text in printable ASCII, without delimiters of C comments and without trigraphs."""
     flat = comment(text, "").strip()
     return re.sub(r"\?(?=\?)", "? ", flat.replace("*/", "* /").replace("/*", "/ *"))
+
+
+def java_comment(text: str, mark: str = "//") -> str:
+    """A comment of Java on one line.
+
+    Java replaces Unicode escapes before it reads comments, so that one could end the line.
+    """
+    return comment(text, mark).replace("\\u", "\\ u")
 
 
 def quoted(text: str) -> str:

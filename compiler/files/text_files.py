@@ -5,7 +5,6 @@ from __future__ import annotations
 import errno
 import hashlib
 import os
-import secrets
 import stat
 import time
 from collections.abc import Iterable, Mapping
@@ -117,7 +116,7 @@ def write(files: Mapping[Path, str | bytes | Iterable[str]]) -> Diagnostic | Non
                 kind = "a directory of that name" if real.is_dir() else "something else there"
                 raise OSError(None, f"there is {kind}")
             # Known before it is made: an interruption at any moment finds it here.
-            temporary = real.parent / f".{real.name[:100]}.{secrets.token_hex(4)}.tmp"
+            temporary = real.parent / f".{real.name[:100]}.{os.urandom(4).hex()}.tmp"
             waiting.append((temporary, real))
             _fill(temporary, content, like=real)
         for temporary, path in waiting:

@@ -24,7 +24,7 @@ from fretish.bindings.declarations import Declarations, Modality, Variable
 from fretish.bindings.definitions import Definitions, expanded, used_definitions
 from fretish.bindings.types import type_errors, value_type_errors
 from fretish.checking import check_response_kinds, conditions, temporal_predicates, too_deep
-from fretish.clock import Clock, assumed_ticks, in_ticks
+from fretish.clock import Clock, assumed_ticks, counts_in_ticks, in_ticks
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
@@ -105,6 +105,8 @@ def _judged(
 ) -> Sentence | Diagnostic:
     """The sentence to formalize: names expanded, numbers in the signals' units."""
     sentence = expanded(written, definitions)
+    if not isinstance(sentence, Diagnostic):
+        sentence = counts_in_ticks(sentence, _clock(declarations))
     if isinstance(sentence, Diagnostic) or declarations is None:
         return sentence
     wrong = next(check_response_kinds(sentence), None)

@@ -149,15 +149,18 @@ def comparisons(requirement: FormalizedRequirement) -> Mapping[str, e.Comparison
     A comparison with its own declared proposition is left out: that may also be true if any sample
     of the tick makes it true, or if the value is unknown.
     """
-    written = dict(candidates(requirement.sentence))
+    written = all_comparisons(requirement)
+    return {name: written[name] for name in atoms_of(requirement.sentence) if name in written}
+
+
+def all_comparisons(requirement: FormalizedRequirement) -> Mapping[str, e.Comparison]:
+    """The same with those within temporal predicates, such as `persisted(3, battery < 20)`."""
+    declared = requirement.declarations
     return {
         name: part
-        for name in atoms_of(requirement.sentence)
-        if isinstance(part := written.get(name), e.Comparison)
-        and (
-            requirement.declarations is None
-            or _is_of_one_moment(name, part, requirement.declarations)
-        )
+        for name, part in candidates(requirement.sentence)
+        if isinstance(part, e.Comparison)
+        and (declared is None or _is_of_one_moment(name, part, declared))
     }
 
 

@@ -75,6 +75,7 @@ def record(requirement: FormalizedRequirement) -> dict[str, Any]:
         "parents": list(entry.parents),
         "rationale": entry.rationale,
         "status": entry.status,
+        **({"kind": entry.kind} if entry.is_assumption else {}),
         "verify": list(entry.verify),
         "params": dict(entry.params),
         **({"accept": dict(entry.accept)} if entry.accept else {}),

@@ -29,6 +29,8 @@ class Statements(ABC):
     """The declaration of a local truth value."""
     IF: ClassVar[tuple[str, str]]
     """The text before and after a condition."""
+    VARIABLES: ClassVar[str] = ""
+    """The prefix of variables; empty: they are local."""
 
     program: StoredProgram
     names: Mapping[str, str]
@@ -41,21 +43,29 @@ class Statements(ABC):
         """The statements of a program, with an identifier for each proposition."""
         return cls(program, names, {cell.name: cell for cell in program.cells})
 
-    @abstractmethod
     def negated(self, value: Value) -> str:
-        """The negation of a value."""
+        """The negation of a value, with parentheses around any operator."""
+        atomic = isinstance(value, Constant | Literal | Variable)
+        return f"!{self.value(value)}" if atomic else f"!({self.value(value)})"
 
-    @abstractmethod
     def capped(self, counter: str, most: int) -> str:
         """The counter one tick later, limited to `most`."""
+        return f"({counter} < {most}) ? ({counter} + 1) : {most}"
 
     @abstractmethod
     def delay(self, name: str, ring: Ring, value: str) -> Iterator[str]:
         """Statements that read and overwrite one bit of a ring, and advance its position."""
 
-    @abstractmethod
     def left(self, deadline: Deadline | None, is_open: Value) -> str:
-        """The ticks left to a deadline of an open demand; without one, a value for none."""
+        """The ticks left to a deadline; by default -1 if no deadline is ahead.
+
+        A counter that requirements share may pass the deadlines of some of them.
+        """
+        if deadline is None:
+            return "-1"
+        counter, ticks = f"{self.CELLS}{deadline.counter}", deadline.deadline_ticks
+        ahead = f"({counter} >= 0) & ({counter} <= {ticks})"
+        return f"({self.grouped(is_open)} & {ahead}) ? ({ticks} - {counter}) : -1"
 
     def readings(self) -> list[dict[str, Any]]:
         """The expressions of all readings, as values for a template."""
@@ -120,7 +130,7 @@ class Statements(ABC):
         return f"({self.value(value)})" if self.joins(value) else self.value(value)
 
     def _place(self, name: str) -> str:
-        return f"{self.CELLS}{name}" if name in self.cells else name
+        return f"{self.CELLS if name in self.cells else self.VARIABLES}{name}"
 
     def _statement(self, step: Step) -> Iterator[str]:
         match step:

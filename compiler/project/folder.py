@@ -29,6 +29,7 @@ from compiler.project.stated_numbers import check_stated_numbers
 from fretish.bindings.declarations import SHARED, Declarations
 from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
+from fretish.diagnostics.messages import diagnostic
 from fretish.documents import RequirementEntry, requirements, unreadable_file
 
 if TYPE_CHECKING:
@@ -69,7 +70,7 @@ def load(
     declarations = _with_atoms(declarations, requirements)
     mistakes = declarations.mistakes.values() if declarations else ()
     single = frozenset(chain.from_iterable(mistakes))
-    of_all = [diagnostic for diagnostic in of_bindings if diagnostic not in single]
+    of_all = [each for each in of_bindings if each not in single]
     own = mistaken | {failure.requirement: failure.diagnostic for failure in failed}
     accepted, unanswered = acceptances(written, chosen if isinstance(chosen, Settings) else None)
     if isinstance(chosen, Diagnostic) and not parents:
@@ -155,7 +156,18 @@ def _formalized(
         requirements.append(requirement)
         if has_errors(remarks):
             mistaken.setdefault(entry, _reason(remarks))
-    return tuple(requirements), tuple(failed), mistaken, diagnostics
+    return tuple(requirements), tuple(failed), mistaken, _with_one_missing_clock(diagnostics)
+
+
+def _with_one_missing_clock(diagnostics: Sequence[Diagnostic]) -> list[Diagnostic]:
+    """The diagnostics, with the first of all warnings that no clock measures a duration (F312)."""
+    assumed = [each for each in diagnostics if each.code is Code.NO_CLOCK and not each.is_error]
+    if len(assumed) < 2:
+        return [*diagnostics]
+    first, *others = assumed
+    durations = "another duration" if len(others) == 1 else f"{len(others)} other durations"
+    whole = diagnostic("assumed_ticks_of_all", first.span, first=first.message, others=durations)
+    return [whole if each is first else each for each in diagnostics if each not in others]
 
 
 def load_folder(

@@ -22,9 +22,10 @@ from compiler.files.artifact import Artifact
 from compiler.files.checked_json import parsed
 from compiler.project.fret_variables import OWN, glossary, text_of, variables_of
 from fretish.classes.frozen import dataclass
-from fretish.diagnostics.diagnostic import Diagnostic, Severity, did_you_mean
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, did_you_mean
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
+from fretish.documents import ASSUMPTION
 from fretish.parser import parse
 from fretish.reading.limits import with_budget
 
@@ -52,6 +53,8 @@ class ImportResult:
     diagnostics: tuple[Diagnostic, ...] = ()
     requirements: int = 0
     variables: int = 0
+    assumptions: int = 0
+    """Number of requirements whose id makes them assumptions, as in FRET."""
     mapping: Mapping[str, str] = field(default_factory=dict)
 
 
@@ -93,7 +96,8 @@ def _from_json(source: Source) -> ImportResult:
     kept: list[Mapping[str, Any]] = []
     declared = variables_of(variables, source, diagnostics, kept)
     files = [*_documents(entries), *glossary(declared, kept)]
-    return ImportResult(tuple(files), tuple(diagnostics), len(entries), len(declared))
+    assumed = sum("kind" in each.header for each in entries)
+    return ImportResult(tuple(files), tuple(diagnostics), len(entries), len(declared), assumed)
 
 
 def _parts(data: Any) -> tuple[list[Mapping[str, Any]], list[Mapping[str, Any]]] | str:
@@ -152,14 +156,39 @@ def _requirements(
         ids[project, reqid] = id
         entries.append((id, fulltext, record))
     for id, fulltext, record in entries:
-        project = text_of(record.get("project"))
-        yield ImportedRequirement(id, _unfenced(fulltext), _header(id, record, ids), project)
-        diagnostics.extend(_unread(id, fulltext))
+        project, header = text_of(record.get("project")), _header(id, record, ids)
+        quoted = _quoted(id, fulltext, diagnostics)
+        if quoted != fulltext:
+            header["fret"] = {**header.get("fret", {}), "fulltext": fulltext}
+        yield ImportedRequirement(id, _unfenced(quoted), header, project)
+        diagnostics.extend(_unread(id, quoted))
 
 
 def _unfenced(text: str) -> str:
     """The text with each line `+++` indented, so that it does not begin a header."""
     return re.sub(r"^\ufeff?(?=\+\+\+)", " ", text, flags=re.MULTILINE)
+
+
+def _quoted(id: str, fulltext: str, diagnostics: list[Diagnostic]) -> str:
+    """The sentence with quotes around each name that is a key word of FRETish.
+
+    F109 reports each of them. A sentence with other errors is imported as it is.
+    """
+    text, remarks = fulltext, list[Diagnostic]()
+    while len(remarks) <= _MOST_QUOTED:
+        mistake = parse(Source(f"{id} (fulltext)", text).span())
+        if not isinstance(mistake, Diagnostic):
+            diagnostics.extend(remarks)
+            return text
+        span = mistake.span
+        if mistake.code is not Code.RESERVED or span is None:
+            break
+        text = f'{text[: span.start]}"{span.text}"{text[span.end :]}'
+        remarks.append(diagnostic("key_word_quoted", span, word=span.text))
+    return fulltext
+
+
+_MOST_QUOTED = 20
 
 
 def _header(
@@ -182,6 +211,7 @@ def _header(
     )
     header: dict[str, Any] = {
         "id": id,
+        "kind": ASSUMPTION if ASSUMPTION in text_of(record.get("reqid")).lower() else "",
         **own_texts,
         "parents": parents,
         "rationale": text_of(record.get("rationale")),
@@ -260,7 +290,8 @@ def _from_csv(source: Source, columns: Mapping[str, str]) -> ImportResult:
         return ImportResult((), (chosen,))
     diagnostics: list[Diagnostic] = []
     entries = list(_requirements((_row(row, chosen) for row in rows), source, diagnostics))
-    return ImportResult(tuple(_documents(entries)), tuple(diagnostics), len(entries), 0, chosen)
+    files, assumed = tuple(_documents(entries)), sum("kind" in each.header for each in entries)
+    return ImportResult(files, tuple(diagnostics), len(entries), 0, assumed, chosen)
 
 
 _DELIMITERS = ",;\t"

@@ -25,6 +25,7 @@ from fretish.bindings.comparisons import is_mixed
 from fretish.bindings.declarations import Declarations, Role, Variable
 from fretish.bindings.definitions import expanded
 from fretish.checking import conditions, has_units
+from fretish.clock import SYMBOLS, duration_text
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source, Span
 from fretish.documents import RequirementEntry
@@ -87,17 +88,30 @@ def _in_fretish(requirement: FormalizedRequirement) -> FormalizedRequirement:
     return _in_quotes(_with_names(requirement) if requirement.definitions else requirement)
 
 
+_FRETS_DURATION = re.compile(rf"[0-9]+\s*(?!(?:{'|'.join(SYMBOLS)})$)[A-Za-z]+")
+
+
+def _with_frets_duration(requirement: FormalizedRequirement) -> str:
+    """The sentence with its duration as a whole number and a word: `500 milliseconds`."""
+    wording, bound = requirement.entry.wording, s.duration(requirement.written.timing)
+    place = bound.span if bound else None
+    if bound is None or place is None or _FRETS_DURATION.fullmatch(place.text):
+        return wording.text
+    start, end = place.start - wording.start, place.end - wording.start
+    return wording.text[:start] + duration_text(bound) + wording.text[end:]
+
+
 def _in_quotes(requirement: FormalizedRequirement) -> FormalizedRequirement:
-    """The requirement with quotes around names that FRET reads only in quotes."""
+    """The requirement with the duration in words, and quotes around names that FRET needs so."""
     wording = requirement.entry.wording
     component = requirement.written.component_span
     places = () if component is None else (component.start - wording.start,)
-    text = quoted(wording.text, places)
+    text = quoted(_with_frets_duration(requirement), places)
     if text == wording.text:
         return requirement
     span = Source(wording.source.name, text).span()
     written = parse(span)
-    assert written == requirement.written, "quotes change nothing"
+    assert written == requirement.written, "quotes and words change nothing"
     entry = replace(requirement.entry, wording=span)
     sentence = written if requirement.sentence == written else requirement.sentence
     return replace(requirement, entry=entry, written=written, sentence=sentence)

@@ -74,6 +74,10 @@ class Target:
     """False if all requirements go into one file, for exchange with another tool."""
     joins: bool = False
     """Whether `TargetOptions.one_file` puts all requirements into one file."""
+    refuse_joint: Callable[[Sequence[FormalizedRequirement]], Diagnostic | None] = (
+        lambda requirements: None
+    )
+    """A reason to refuse one file for all requirements; none of them is refused alone."""
     of_bindings: bool = False
     """Whether the output depends only on the bindings."""
     reads: tuple[str, ...] = ()

@@ -9,7 +9,7 @@ from typing import TypeVar
 from compiler.files.build_id import __version__
 from compiler.files.records import replace
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.letters import comparisons, temporal_predicate
+from compiler.formalization.letters import all_comparisons, temporal_predicate
 from fretc.analysis import implications as of_runs
 from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.arena.roles import Roles
@@ -236,9 +236,8 @@ class _Setting:
                 }
                 for verdict in (RealizabilityVerdict.REALIZABLE, RealizabilityVerdict.UNREALIZABLE)
             )
-            chosen = (
-                self._roles[name] for requirement in self._rules for name in requirement.variables
-            )
+            names = (name for requirement in self._rules for name in requirement.variables)
+            chosen = [*map(self._roles.get, names)]
             if not self._assumptions and kept.issuperset(self._ids):
                 yield Consistency(self._ids, True)
             elif not self._assumptions and lost & {*self._ids} and Role.INPUT not in chosen:
@@ -433,7 +432,7 @@ def _terms(
             "before the first tick every proposition is false; `preBool`, `preInt` and `preReal` "
             "state their own first value"
         )
-    if any(comparisons(requirement) for requirement in requirements):
+    if any(all_comparisons(requirement) for requirement in requirements):
         yield (
             "numbers are exact integers or reals without bounds; rounding of floats is not modelled"
         )

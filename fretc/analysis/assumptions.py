@@ -1,4 +1,4 @@
-"""Assumptions about the environment: the sentences of `[[assume.requirement]]`."""
+"""Assumptions about the environment: `kind = "assumption"`, and `[[assume.requirement]]`."""
 
 from __future__ import annotations
 
@@ -10,17 +10,25 @@ from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Diagnostic, has_errors
 
 
+def guarantees(
+    requirements: Sequence[FormalizedRequirement],
+) -> tuple[FormalizedRequirement, ...]:
+    """The requirements that demand something of the system."""
+    return tuple(each for each in requirements if not each.entry.is_assumption)
+
+
 def assumptions(
     requirements: Sequence[FormalizedRequirement], declarations: Declarations | None
 ) -> tuple[tuple[FormalizedRequirement, ...], tuple[Diagnostic, ...]]:
-    """The assumptions as requirements, and their diagnostics.
+    """The assumptions as requirements, and the diagnostics of those in the bindings.
 
     Args:
-        requirements: the requirements; assumptions have other ids.
+        requirements: all requirements; those of kind `assumption` come first in the result.
         declarations: the bindings; None: there are none.
     """
+    own = tuple(each for each in requirements if each.entry.is_assumption)
     if declarations is None or not declarations.environment:
-        return (), ()
+        return own, ()
     found: list[FormalizedRequirement] = []
     said: list[Diagnostic] = []
     for entry in declarations.environment:
@@ -32,4 +40,4 @@ def assumptions(
     if not has_errors(said):
         every = [*(requirement.entry for requirement in requirements), *declarations.environment]
         said.extend(dict.fromkeys(duplicate_ids(every).values()))
-    return tuple(found), tuple(dict.fromkeys(said))
+    return (*own, *found), tuple(dict.fromkeys(said))

@@ -6,7 +6,7 @@ strategy for the same inputs, and the strategies can be combined.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 
 from compiler.formalization.formalized import FormalizedRequirement
 from fretc.analysis.arena.roles import Roles
@@ -16,10 +16,13 @@ Tokens = frozenset[str]
 
 
 def tokens(requirement: FormalizedRequirement, roles: Roles, *kinds: Role) -> Tokens:
-    """Variables of these roles that a requirement reads; for a bound proposition, its signals."""
+    """Variables of these roles that a requirement reads; for a bound proposition, its signals.
+
+    A variable without a role may have any of them.
+    """
     names: set[str] = set()
     for name in requirement.variables:
-        if roles[name] in kinds:
+        if roles.get(name) in (None, *kinds):
             bound = (
                 requirement.declarations.propositions.get(name)
                 if requirement.declarations
@@ -93,3 +96,45 @@ def _groups(
         groups.append((numbers, mine.union(*(group[1] for group in touched))))
     kept = [sorted(n for n in numbers if n < len(requirements)) for numbers, _ in groups]
     return [tuple(members[n] for n in numbers) for numbers in sorted(filter(None, kept))]
+
+
+def parts(
+    requirements: Sequence[FormalizedRequirement],
+    left_out: Collection[str],
+    uncertain: Collection[str],
+    roles: Roles,
+) -> Iterator[tuple[FormalizedRequirement, ...]]:
+    """Some requirements of a component that may be decided where the component is not.
+
+    Those that the analysis knows exactly; each of the others by itself, and with each one that
+    shares an output. What conflicts in a part conflicts in the component.
+
+    Args:
+        requirements: the requirements of the component.
+        left_out: ids of those that the problem of the component does not count.
+        uncertain: ids of those with atoms that are not known exactly.
+        roles: roles of their variables.
+    """
+    seen: set[tuple[str, ...]] = set()
+    doubtful = [each for each in requirements if each.id in left_out or each.id in uncertain]
+    exact = tuple(each for each in requirements if each not in doubtful)
+    outputs = {each.id: tokens(each, roles, Role.OUTPUT) for each in requirements}
+    few = [(each,) for each in doubtful] + [
+        (each, other)
+        for each in doubtful
+        if each.id in left_out
+        for other in requirements
+        if other is not each and outputs[each.id] & outputs[other.id]
+    ]
+    for part in (exact, *few):
+        ids = tuple(sorted(each.id for each in part))
+        if part and len(part) < len(requirements) and ids not in seen:
+            seen.add(ids)
+            yield part
+
+
+def without_inputs(
+    requirements: Sequence[FormalizedRequirement], roles: Roles
+) -> tuple[FormalizedRequirement, ...]:
+    """The requirements that the system alone decides."""
+    return tuple(each for each in requirements if not tokens(each, roles, Role.INPUT))

@@ -7,6 +7,7 @@ without an answer within its limits is reported as `not checked`.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from enum import StrEnum
 from typing import Annotated, Any, Final, Literal
 
@@ -142,11 +143,24 @@ class Analysis(Record, frozen=True):
     roles: Annotated[
         dict[str, Role],
         about(
-            "the role of each variable: the environment chooses inputs, the system chooses outputs"
+            "the role of each variable: the environment chooses inputs, the system chooses "
+            "outputs; `x of A` is the variable of the component A, if it has another role elsewhere"
         ),
     ]
     terms: Annotated[tuple[str, ...], about("the assumptions of the analysis, in words")]
     open: Annotated[tuple[OpenQuestion, ...], about("questions without an answer, and the reasons")]
+
+    def roles_in(self, requirements: Sequence[str]) -> Mapping[str, Role]:
+        """The role of each variable, as it is for some requirements of one system."""
+        several = {name.split(" of ")[0] for name in self.roles if " of " in name} - {*self.roles}
+        chosen = {
+            name
+            for each in self.components
+            if not set(requirements).isdisjoint(each.requirements)
+            for name in each.outputs
+        }
+        own = {name: Role.OUTPUT if name in chosen else Role.INPUT for name in several}
+        return {**self.roles, **own}
 
 
 def schema() -> dict[str, Any]:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import field, replace
 from itertools import chain, repeat
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.letters import comparisons
+from compiler.formalization.letters import all_comparisons
 from compiler.formalization.resolution import candidates
 from compiler.logic.diagrams import decision_diagrams as bdd
 from compiler.logic.diagrams.decision_diagrams import Function
@@ -17,9 +17,9 @@ from fretc.analysis.arena.counters import counter
 from fretc.analysis.arena.memory import RequirementCounter, side_by_side
 from fretc.analysis.arena.product import Arena, arena
 from fretc.analysis.arena.propositions import Propositions
-from fretc.analysis.arena.roles import Roles
+from fretc.analysis.arena.roles import Roles, missing_role
 from fretc.analysis.arena.variables import Numbers, UnsupportedError, numbers
-from fretc.analysis.components import about
+from fretc.analysis.components import about, parts
 from fretc.analysis.games.game import Game, upheld
 from fretc.analysis.games.game_traces import Run
 from fretc.analysis.games.replay import remembering
@@ -216,6 +216,27 @@ class RealizabilityProblem:
         )
 
     @property
+    def parts(self) -> Iterator[tuple[FormalizedRequirement, ...]]:
+        """Some of the requirements that may be decided where the whole problem is not."""
+        alphabet = self.arena.alphabet
+        atoms = alphabet.uncertain_atoms(Role.INPUT) | alphabet.uncertain_atoms(Role.OUTPUT)
+        uncertain = [each.id for each in self.requirements if not atoms.isdisjoint(_atoms(each))]
+        return parts(self.requirements, self.arena.beyond, uncertain, self.roles)
+
+    def part(
+        self, requirements: Sequence[FormalizedRequirement], budget: Budget
+    ) -> RealizabilityProblem:
+        """The problem of some of the requirements, with an alphabet of their own.
+
+        Raises:
+            UnsupportedError: an assumption has no counter.
+            OutOfTimeError: solving their comparisons takes longer than the budget.
+        """
+        return stage(
+            requirements, self.assumptions, self.roles, as_fret=self.as_fret, budget=budget
+        )
+
+    @property
     def of_inputs(self) -> str | None:
         """Why the environment has valuations that may be impossible; None: it has none."""
         return self.arena.alphabet.uncertainties.get(Role.INPUT)
@@ -295,8 +316,17 @@ def _built(
     favoured: Role = Role.INPUT,
     steps: int = 0,
 ) -> RealizabilityProblem:
-    alphabet = alphabet_of([*requirements, *near], roles, fresh, favoured, budget, steps)
-    built = arena(requirements, near, alphabet, fresh, as_fret=as_fret)
+    beyond = {
+        requirement.id: f"`{missing}` has no single role"
+        for requirement in requirements
+        if (missing := missing_role(requirement, roles)) is not None
+    }
+    for assumption in near:
+        if (missing := missing_role(assumption, roles)) is not None:
+            raise UnsupportedError(f"of the assumption {assumption.id}: `{missing}` has no role")
+    counted = [requirement for requirement in requirements if requirement.id not in beyond]
+    alphabet = alphabet_of([*counted, *near], roles, fresh, favoured, budget, steps)
+    built = arena(counted, near, alphabet, fresh, as_fret=as_fret, beyond=beyond)
     return RealizabilityProblem(
         tuple(requirements), tuple(near), built, roles, as_fret, favoured, steps, fresh
     )
@@ -306,7 +336,7 @@ def _has_numbers(requirement: FormalizedRequirement) -> bool:
     """Whether an atom of the requirement compares numbers."""
     declared = requirement.declarations
     if declared is None:
-        return bool(comparisons(requirement))
+        return bool(all_comparisons(requirement))
     return bool(requirement.stated) or not declared.propositions.keys().isdisjoint(
         requirement.variables
     )

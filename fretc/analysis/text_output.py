@@ -100,7 +100,7 @@ def _conflict(
     width = max(map(len, ids))
     for id in ids:
         yield f"  {id:<{width}}  {sentences.get(id, '')}".rstrip(), None
-    for row in drawn(conflict.play, analysis.roles):
+    for row in drawn(conflict.play, analysis.roles_in(ids)):
         yield f"    {row}", None
     if conflict.loop is not None:
         yield f"    the ticks from {conflict.loop} on repeat for ever", None
@@ -124,7 +124,7 @@ def _inconsistency(clash: Inconsistency, analysis: Analysis) -> Iterator[Line]:
     where = "from the start" if not clash.play else "after this run, which violates none of them"
     ids = listed(clash.requirements)
     yield f"{sign.glyph} {ids} can no longer be satisfied together {where}", sign.colour
-    for row in drawn(clash.play, analysis.roles):
+    for row in drawn(clash.play, analysis.roles_in(clash.requirements)):
         yield f"    {row}", None
 
 

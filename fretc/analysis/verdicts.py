@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import field, replace
 
 from compiler.files.records import replace as altered
@@ -10,6 +10,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.arena.variables import UnsupportedError
+from fretc.analysis.components import without_inputs
 from fretc.analysis.controllers.circuit import Circuit, circuit
 from fretc.analysis.controllers.files import ControllerFormat
 from fretc.analysis.controllers.machine import NoMachineError, machine
@@ -52,8 +53,33 @@ def verdict(
         found, because_ = _answer(there, budget)
         if found is not RealizabilityVerdict.NOT_CHECKED:
             answer, why, setting = found, because_, there
+    if answer is RealizabilityVerdict.NOT_CHECKED:
+        alone = without_inputs(setting.requirements, setting.roles)
+        some = [*setting.parts, *([alone] if 0 < len(alone) < len(setting.requirements) else [])]
+        lost = next(_lost_parts(setting, some, budget), None)
+        if lost is not None:
+            ids = [requirement.id for requirement in lost.requirements]
+            which = listed(ids) if len(ids) <= _MOST_NAMES else f"{len(ids)} of them"
+            answer, why = RealizabilityVerdict.UNREALIZABLE, f"the environment wins against {which}"
     spent = round(budget.spent, 3)
     return component(setting.requirements, setting.roles, answer, why, spent), setting
+
+
+def _lost_parts(
+    setting: RealizabilityProblem, some: Iterable[Sequence[FormalizedRequirement]], budget: Budget
+) -> Iterator[RealizabilityProblem]:
+    """Problems of some of the requirements that the environment certainly wins."""
+    try:
+        _check_assumptions(setting, budget)
+        for each in some:
+            part = setting.part(each, budget)
+            if _answer(part, budget)[0] is RealizabilityVerdict.UNREALIZABLE:
+                yield part
+    except (UnsupportedError, OutOfTimeError):
+        return
+
+
+_MOST_NAMES = 4
 
 
 def _has_room(budget: Budget) -> bool:
@@ -80,7 +106,7 @@ def component(
         name
         for requirement in requirements
         for name in requirement.variables
-        if roles[name] is Role.OUTPUT
+        if roles.get(name) is Role.OUTPUT
     )
     ids = tuple(requirement.id for requirement in requirements)
     return Component(ids, tuple(dict.fromkeys(names)), answer, why, seconds)
@@ -119,7 +145,7 @@ def _unrolled(
     from fretc.analysis.games.lassos import NoShortRun, lasso
 
     chosen = [
-        setting.roles[name]
+        setting.roles.get(name)
         for requirement in setting.requirements
         for name in requirement.variables
     ]
@@ -216,7 +242,27 @@ def conflicts(
     if (uncertainty := found.uncertainty) is None:
         yield Completeness(tuple(requirement.id for requirement in setting.requirements))
     else:
+        yield from _of_parts(setting, shown, budget)
         yield OpenQuestion(question, uncertainty)
+
+
+def _of_parts(
+    setting: RealizabilityProblem, shown: Collection[tuple[str, ...]], budget: Budget
+) -> Iterator[Conflict]:
+    """Minimal conflicts of some of the requirements, except those that are known.
+
+    A minimal conflict of a part is one of the component, because all its subsets are in the part.
+    """
+    known = [frozenset(each) for each in shown]
+    try:
+        for part in _lost_parts(setting, setting.parts, budget):
+            fights = _Fights(part, part.generous(budget))
+            for core in fights.minimal(budget):
+                if not any(each <= frozenset(core) for each in known):
+                    known.append(frozenset(core))
+                    yield _conflict(fights.sure(core), core, budget)
+    except (UnsupportedError, OutOfTimeError):
+        return
 
 
 def _perhaps_larger(conflict: Conflict) -> Conflict:

@@ -11,7 +11,7 @@ from fretc.analysis.evidence import default_path as analysis_file
 from fretc.api.refusal import Refusal, bounded
 from fretc.attestation.signatures import SIGNERS
 from fretc.report.make import ReportBuild, make
-from fretc.verification.ajpf_results import default_paths as ajpf_results
+from fretc.verification.reader import ajpf_results
 from fretc.verification.reader import default_path as verification_file
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic

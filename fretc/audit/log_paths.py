@@ -10,13 +10,13 @@ from pathlib import Path
 from compiler.files.text_files import unreadable
 from fretc.logs.storage.folders import METADATA, Folder, folder, is_folder
 from fretc.logs.storage.listings import below, is_store
-from fretc.logs.storage.log_names import STDIN, is_url, name_of
+from fretc.logs.storage.log_names import LOGS, STDIN, is_url, name_of
 from fretc.logs.storage.splits import ACTIVE, is_backup, run_name, split
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
 
-_LOGS = (".mcap", ".bag", ".db3", ACTIVE, ".bag.orig.active")
+_LOGS = (*LOGS, ACTIVE, ".bag.orig.active")
 """Suffixes of logs; other files in folders are skipped."""
 ANNOTATIONS = ".fretc.mcap"
 """Suffixes of annotation files; they are skipped in folders of logs."""

@@ -12,6 +12,7 @@ import numpy as np
 from compiler.situations.situations import Situation
 from compiler.situations.thresholds import ThresholdPosition
 from fretc.audit.evidence.schema import Health, Situations
+from fretc.audit.evidence.verdicts import of_kind
 from fretc.audit.evidence.writer import RunResult, health
 from fretc.audit.measurements.intervals import Moment, interval_words
 from fretc.audit.measurements.judgement import WITHOUT_VIOLATION, judge
@@ -58,6 +59,8 @@ class MonitoredRequirement:
     """The propositions that `count` reads; the monitor may need fewer."""
     situations: tuple[Situation, ...] = ()
     """The situations to look for in runs; empty: they are not measured."""
+    is_assumption: bool = False
+    """Whether it demands something of the environment."""
 
     @property
     def propositions(self) -> tuple[str, ...]:
@@ -154,7 +157,16 @@ def audit(
         _evidence(recording, declarations, truths, at, margins_of, near, requirement, run_health)
         for requirement in requirements
     ]
-    return tuple(_phased(result, phases_of.get(result.requirement)) for result in evidence)
+    return tuple(
+        _of_kind(_phased(result, phases_of.get(result.requirement)), requirement)
+        for result, requirement in zip(evidence, requirements, strict=True)
+    )
+
+
+def _of_kind(evidence: RunResult, requirement: MonitoredRequirement) -> RunResult:
+    """The result, with the verdict of an assumption if it is one."""
+    is_assumption = requirement.is_assumption
+    return replace(evidence, verdict=of_kind(evidence.verdict, is_assumption=is_assumption))
 
 
 def _phased(evidence: RunResult, phases: Phases | None) -> RunResult:

@@ -132,6 +132,7 @@ def _claim(
         demand(requirement),
         situations(requirement, exact=True),
         chance(requirement),
+        requirement.entry.is_assumption,
     )
 
 
@@ -145,7 +146,8 @@ def _digest(
     """SHA-256 of the plan, with positions in the bindings: diagnostics name their lines."""
     digest = hashlib.sha256(pickle.dumps(declarations, protocol=5))
     texts = [
-        (c.id, c.sentence, dict(c.verdict_inputs), c.monitor, astuple(c.demand)) for c in claims
+        (c.id, c.sentence, dict(c.verdict_inputs), c.monitor, astuple(c.demand), c.is_assumption)
+        for c in claims
     ]
     reasons = [
         (r.id, r.sentence, dict(r.verdict_inputs), [d.message for d in r.why]) for r in refused
@@ -183,6 +185,7 @@ def _letters(plan: Plan, claim: AuditedRequirement, propositions: Sequence[str])
         claim.monitor,
         astuple(claim.demand),
         claim.chance and claim.chance.text,
+        claim.is_assumption,
         [repr(read.propositions[name]) for name in propositions],
         [repr(signal) for _, signal in sorted(read.signals.items())],
         read.assumptions,
@@ -214,6 +217,7 @@ def monitored_requirements(plan: Plan) -> tuple[MonitoredRequirement, ...]:
             partial(trials, claim.chance.obligation) if claim.chance else None,
             claim.chance.obligation.atoms if claim.chance else (),
             claim.situations,
+            claim.is_assumption,
         )
         for claim in plan.claims
     )

@@ -28,6 +28,7 @@ from fretc.terminal.output import (
     EXIT_VIOLATION,
     coloured,
     fail,
+    fail_at_end,
     print_diagnostics,
     print_status,
     write_outputs,
@@ -40,7 +41,7 @@ if TYPE_CHECKING:
 
     from compiler.formalization.formalized import FormalizedRequirement
     from fretc.analysis.analysis import AnalysisOptions
-    from fretc.analysis.arena.roles import Roles
+    from fretc.analysis.arena.systems import Systems
     from fretc.analysis.findings import Analysis
 
 
@@ -105,17 +106,21 @@ def analyze(
     from compiler.files.records import plain
     from compiler.files.templating import to_json
     from fretc.analysis.analysis import AnalysisOptions
-    from fretc.analysis.arena.roles import roles
+    from fretc.analysis.arena.systems import systems
     from fretc.analysis.evidence import document
     from fretc.analysis.text_output import lines
     from fretish.printer import sentence as printed
 
     known = requirement_set(files, component, requirements, bindings, ("environment",))
     project, formalized, assumed = known.project, known.requirements, known.assumed
-    chosen = roles([*formalized, *assumed])
-    if isinstance(chosen, tuple):
-        fail(*chosen)
-    analysis, stopped = asked(formalized, assumed, chosen, AnalysisOptions(seconds, as_fret))
+    examined = systems(formalized, assumed)
+    if not examined.can_be_examined:
+        fail(*examined.mistakes)
+    print_diagnostics(examined.mistakes)
+    if examined.mistakes:
+        fail_at_end()
+    options = AnalysisOptions(seconds, as_fret)
+    analysis, stopped = asked(formalized, assumed, examined, options)
     evidence = f"{to_json(plain(document(formalized, assumed, analysis, as_fret=as_fret)))}\n"
     if emitted is not None and emit_to == "-":
         pass  # Standard output then holds the controller.
@@ -130,22 +135,14 @@ def analyze(
     if output != "-":
         write_outputs({Path(output): evidence}, input_files(project, bindings))
     if emitted is not None and not stopped:
-        _emit(
-            analysis,
-            formalized,
-            assumed,
-            chosen,
-            AnalysisOptions(seconds, as_fret),
-            emitted,
-            emit_to,
-        )
+        _emit(analysis, examined, options, emitted, emit_to)
     raise SystemExit(EXIT_INTERRUPTED if stopped else _status(analysis))
 
 
 def asked(
     requirements: Sequence[FormalizedRequirement],
     assumed: Sequence[FormalizedRequirement],
-    chosen: Roles,
+    examined: Systems,
     options: AnalysisOptions,
 ) -> tuple[Analysis, bool]:
     """The analysis of the requirements, and whether Ctrl-C has stopped it."""
@@ -153,15 +150,18 @@ def asked(
     from fretc.analysis.worker import finished, missing_limits
 
     print_diagnostics(missing_limits())
-    answers, stopped = finished(jobs(requirements, chosen, assumed, options), print_activity)
-    return assembled(requirements, chosen, assumed, options, answers), stopped
+    work = [
+        job
+        for system in examined.every
+        for job in jobs(system.requirements, system.roles, system.assumptions, options)
+    ]
+    answers, stopped = finished(work, print_activity)
+    return assembled(requirements, examined.roles, assumed, options, answers), stopped
 
 
 def _emit(
     analysis: Analysis,
-    requirements: Sequence[FormalizedRequirement],
-    assumed: Sequence[FormalizedRequirement],
-    chosen: Roles,
+    examined: Systems,
     options: AnalysisOptions,
     emitted: str,
     output: str,
@@ -179,7 +179,11 @@ def _emit(
         print_status(f"no controller is written: {analysis.why}")
         return
     output_format = ControllerFormat(emitted)
-    work = controllers(requirements, chosen, assumed, options, output_format)
+    if len(examined.every) > 1:
+        fail(diagnostic("no_controller", why="there are several systems", help=_ONE_SYSTEM))
+    (system,) = examined.every
+    requirements = system.requirements
+    work = controllers(requirements, system.roles, system.assumptions, options, output_format)
     found, stopped = finished(work, print_activity)
     if stopped:
         raise SystemExit(EXIT_INTERRUPTED)
@@ -198,6 +202,9 @@ def _emit(
         write_outputs({Path("-"): "".join(artifact.text for artifact in artifacts)})
     else:
         write_outputs({Path(output) / artifact.path: artifact.text for artifact in artifacts})
+
+
+_ONE_SYSTEM = "select one of them with `--component`"
 
 
 def _smaller(output_format: str) -> str:

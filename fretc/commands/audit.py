@@ -164,7 +164,7 @@ _AUDIT = {
 def audit(summary: bool, query: str | None, **options: Any) -> None:
     """Check recorded runs against the requirements and give each a verdict.
 
-    LOG is an MCAP file, a ROS bag (.bag, .db3), a folder (all logs below it), a quoted pattern
+    LOG is an MCAP file, a ROS bag, a ULog, a table (.csv, .jsonl), a folder, a quoted pattern
     ('runs/**/*.mcap'), a URL, a folder or pattern in an object store (s3://bucket/runs/), or
     `-` for standard input. A rosbag2 folder with several files is one log.
 

@@ -13,9 +13,10 @@ from fretc.audit.evidence.declared_units import without_samples
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.result_summaries import EvidenceSource
 from fretc.audit.evidence.schema import Result, ThresholdRecord, Violation
-from fretc.audit.evidence.verdicts import SHOWN, VERDICTS
+from fretc.audit.evidence.verdicts import ASSUMPTION_BROKEN, SHOWN, VERDICTS
 from fretc.audit.measurements.confidence_intervals import REFUTED
 from fretc.audit.measurements.intervals import end_ns
+from fretc.audit.outputs.broken_assumptions import broken_assumptions
 from fretc.audit.outputs.totals import (
     COUNTED,
     ResultCount,
@@ -103,8 +104,18 @@ def lines(subject: AuditText, screen: Screen, *, every: bool) -> Iterator[Line]:
         yield from _estimate(one, named(one.requirement, titles.get(one.requirement, "")))
     for text in _first_to_look_at(subject):
         yield ((visible(text), None),)
+    yield from _assumptions(subject)
     yield from _situations(subject)
     yield _last(subject)
+
+
+def _assumptions(subject: AuditText) -> Iterator[Line]:
+    """The assumptions that runs do not keep."""
+    summaries = (each for _, each in subject.source.summaries())
+    results = ((each.run, each.requirement, each.verdict) for each in summaries)
+    for each in broken_assumptions(results, subject.project.formalized):
+        sign = VERDICTS[ASSUMPTION_BROKEN].sign
+        yield ((visible(f"{sign.glyph} {each.in_words}"), sign.colour),)
 
 
 def _situations(subject: AuditText) -> Iterator[Line]:

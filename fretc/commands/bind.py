@@ -49,6 +49,7 @@ if TYPE_CHECKING:
 @requirements_option
 @bindings_option
 @output_option(default="-", show_default=True, help="File for the draft.")
+@click.option("--update", is_flag=True, help="Add to the bindings what `--from LOG` would draft.")
 @click.option("--force", is_flag=True, help="Overwrite an existing file.")
 @format_option(text="Output format of `--check`.")
 @jobs_option
@@ -59,6 +60,7 @@ def bind(
     requirements: str,
     bindings: str | None,
     output: str,
+    update: bool,
     force: bool,
     output_format: str,
     jobs: int,
@@ -69,6 +71,9 @@ def bind(
     known, all other numbers and texts as comments, and a blank entry for each proposition that
     the requirements use and no bindings define.
 
+    `--from LOG --update` appends to the existing bindings a table for each name that the
+    requirements use and the bindings lack. It changes nothing that is there.
+
     `--check LOG...` prints in how many ticks each proposition was true, false and unknown, and
     how often it changed. Exit status: 0 each proposition took both values in some log, 3 one
     did not, 2 bad usage or bad input.
@@ -76,9 +81,11 @@ def bind(
     Example: fretc bind --from run.mcap -o requirements/bindings.toml
     """
     drafts = source is not None
-    if drafts == check:
+    if drafts == check or (update and not drafts):
         fail(_not_one_mode())
-    if source is not None:
+    if source is not None and update:
+        _update(source, requirements, bindings)
+    elif source is not None:
         if paths:
             fail(_second_log(paths[0]))
         project = _project(requirements, bindings, replaced=output)
@@ -136,12 +143,8 @@ def _is_in(diagnostic: Diagnostic, path: str) -> bool:
 
 
 def _draft(log: str, project: Project, output: str, *, force: bool) -> None:
-    from fretc.audit.bindings.draft import (
-        draft,
-        durations,
-        missing_propositions,
-        missing_signals,
-    )
+    from fretc.audit.bindings.draft import draft
+    from fretc.audit.bindings.needs import durations, missing_propositions, missing_signals
     from fretc.logs.reader import look
 
     if output != "-" and not force and os.path.lexists(output):
@@ -152,6 +155,30 @@ def _draft(log: str, project: Project, output: str, *, force: bool) -> None:
         contents, missing_propositions(project), durations(project), missing_signals(project)
     )
     write_outputs({Path(output): text}, (log,))
+    raise SystemExit(EXIT_OK)
+
+
+def _update(log: str, requirements: str, bindings: str | None) -> None:
+    from compiler.project.paths import sibling_path
+    from fretc.audit.bindings.draft import addition
+    from fretc.audit.bindings.needs import missing_propositions, missing_signals
+    from fretc.logs.reader import look
+
+    file = bindings or sibling_path(requirements, "bindings.toml")
+    project = _project(requirements, file)
+    declared = project.declarations
+    if file is None or declared is None:
+        fail(diagnostic("no_bindings_to_update"))
+    known = {*declared.signals, *declared.propositions, *(name for _, name in declared.mistakes)}
+    propositions = [each for each in missing_propositions(project) if each.name not in known]
+    signals = [each for each in missing_signals(project) if each.name not in known]
+    if not propositions and not signals:
+        click.echo("nothing to add: the bindings have every name of the requirements", err=True)
+        raise SystemExit(EXIT_OK)
+    contents = or_fail(look(log, words=True))
+    print_diagnostics(contents.recording.findings)
+    text = declared.source.text.rstrip("\n") + "\n" + addition(contents, propositions, signals)
+    write_outputs({Path(file): text}, (log,))
     raise SystemExit(EXIT_OK)
 
 

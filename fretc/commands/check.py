@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
@@ -37,6 +37,7 @@ from fretish.diagnostics.rendering import as_json, visible
 if TYPE_CHECKING:
     from compiler.project.project import Project
     from fretc.analysis.evidence import AnalyzedSet
+    from fretish.documents import RequirementEntry
 
 T = TypeVar("T")
 
@@ -93,7 +94,7 @@ def check(
     project = or_fail(load_folder(requirements, bindings, hazards))
     files = _Files(requirements, evidence_path(evidence), verification, analysis)
     diagnostics = [*project.diagnostics, *_found(project, files, analyze=analyze)]
-    _finish(tuple(dict.fromkeys(diagnostics)), len(project.requirements), output_format)
+    _finish(tuple(dict.fromkeys(diagnostics)), project.requirements, output_format)
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,22 +165,21 @@ def _value(read: T | Diagnostic, diagnostics: list[Diagnostic]) -> T | None:
 def _together(project: Project, known: AnalyzedSet | None) -> Iterator[Diagnostic]:
     """F561 for each conflict, F562 if realizability is unknown."""
     from fretc.analysis.analysis import DEFAULT
-    from fretc.analysis.arena.roles import roles
-    from fretc.analysis.assumptions import assumptions
+    from fretc.analysis.arena.systems import systems
+    from fretc.analysis.assumptions import assumptions, guarantees
     from fretc.analysis.evidence import remarks, suspicions
     from fretc.commands.analyze import asked
 
-    requirements = project.in_force
-    assumed, said = assumptions(requirements, project.declarations)
+    requirements = guarantees(project.in_force)
+    assumed, said = assumptions(project.in_force, project.declarations)
     yield from said
-    chosen = roles([*requirements, *assumed])
-    if isinstance(chosen, tuple):
-        yield from chosen
-    elif requirements and not has_errors(said):
+    examined = systems(requirements, assumed)
+    yield from examined.mistakes
+    if requirements and not has_errors(said):
         if known is not None and not [*suspicions(known.document, requirements, assumed)]:
             analysis = known.document.analysis
         else:
-            analysis, _ = asked(requirements, assumed, chosen, DEFAULT)
+            analysis, _ = asked(requirements, assumed, examined, DEFAULT)
         yield from remarks(analysis, requirements)
 
 
@@ -198,16 +198,22 @@ def _fix(folder: str) -> None:
         print_status("")
 
 
-def _finish(diagnostics: tuple[Diagnostic, ...], count: int, output_format: str) -> None:
+def _finish(
+    diagnostics: tuple[Diagnostic, ...],
+    requirements: Sequence[RequirementEntry],
+    output_format: str,
+) -> None:
     """Print the diagnostics and exit with the matching status."""
     from compiler.files.templating import to_json
 
+    assumed = [each.id for each in requirements if each.is_assumption and each.is_in_force]
     accepted = [d for d in diagnostics if d.accepted]
     errors = sum(d.is_error for d in diagnostics)
     warnings = sum(d.is_open for d in diagnostics)
     if output_format == "json":
-        counts = {
-            "requirements": count,
+        counts: dict[str, object] = {
+            "requirements": len(requirements),
+            "assumptions": assumed,
             "mistakes": errors,
             "warnings": warnings,
             "accepted": len(accepted),
@@ -217,9 +223,11 @@ def _finish(diagnostics: tuple[Diagnostic, ...], count: int, output_format: str)
         print_diagnostic_groups([d for d in diagnostics if not d.accepted], accepted)
         if diagnostics:
             print_status("")
+        if assumed:
+            print_status(visible(f"assumptions about the environment: {', '.join(assumed)}"))
         counts_in_words = f"{_many(errors, 'error')}, {_many(warnings, 'warning')}"
         also = f", {len(accepted)} accepted" if accepted else ""
-        print_status(f"{_many(count, 'requirement')}: {counts_in_words}{also}")
+        print_status(f"{_many(len(requirements), 'requirement')}: {counts_in_words}{also}")
     raise SystemExit(EXIT_USAGE if errors else EXIT_INCONCLUSIVE if warnings else EXIT_OK)
 
 

@@ -242,6 +242,8 @@ def _emitted(
     one_file = target.together or (options.one_file and target.joins)
     if one_file:
         whole += name_collisions(requirements)
+    if options.one_file and target.joins and not (wrong or whole):
+        whole += [refusal] if (refusal := target.refuse_joint(requirements)) else []
     if target.together and any(
         each.is_error and each.code is Code.BAD_SETTINGS for each in project.diagnostics
     ):  # The settings name the maintainer of a package.
@@ -333,7 +335,8 @@ def import_(
     if clashes and output != "-" and not force:
         fail(diagnostic("output_exists", path=str(Path(output) / clashes[0])))
     _deliver_all(files, output)
-    counts = f"{result.requirements} requirements, {result.variables} variables"
+    assumed = f" ({result.assumptions} of them assumptions)" if result.assumptions else ""
+    counts = f"{result.requirements} requirements{assumed}, {result.variables} variables"
     print_status(f"imported {counts}")
 
 

@@ -24,7 +24,7 @@ from fretish.diagnostics.diagnostic import Diagnostic
 def info(paths: tuple[str, ...], whole: bool, output_format: str) -> None:
     """Show the topics, rates and damage of recorded runs.
 
-    LOG is an MCAP file, a ROS bag (.bag, .db3), a folder (all logs below it), a quoted pattern
+    LOG is an MCAP file, a ROS bag, a ULog, a table (.csv, .jsonl), a folder, a quoted pattern
     ('runs/**/*.mcap'), a URL, or `-` for standard input. For each topic the command prints
     type, count, rate, longest gap, and the fields that a signal in bindings.toml can read.
 

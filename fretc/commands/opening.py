@@ -95,11 +95,16 @@ def requirement_set(
 
     Args: as for `project_of`; and `component`, whose requirements are chosen (None: all).
     """
-    from fretc.analysis.assumptions import assumptions
+    from fretc.analysis.arena.systems import about_same_variables
+    from fretc.analysis.assumptions import assumptions, guarantees
 
     project, first = project_of(files, requirements, bindings, reads)
-    chosen = active_requirements(project, component)
-    assumed, remarks = assumptions(chosen, project.declarations)
+    chosen = guarantees(active_requirements(project, component))
+    if not chosen:
+        fail(diagnostic("nothing_to_analyze"))
+    assumed, remarks = assumptions(project.in_force, project.declarations)
+    if component is not None:
+        assumed = about_same_variables(chosen, assumed)
     print_project_diagnostics(remarks, first)
     if has_errors(remarks):
         raise SystemExit(EXIT_USAGE)
@@ -109,7 +114,7 @@ def requirement_set(
 def active_requirements(
     project: Project, component: str | None
 ) -> tuple[FormalizedRequirement, ...]:
-    """The requirements to analyze: all that are in force."""
+    """The requirements in force: all, or those of one component."""
     requirements = project.in_force
     if component is not None:
         requirements = _of_component(requirements, component)

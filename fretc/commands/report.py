@@ -113,6 +113,7 @@ def _forms(command: Callable[..., None]) -> Callable[..., None]:
     is_flag=True,
     help="Include the page of `fretc play` in the HTML page.",
 )
+@click.option("--open", "opens", is_flag=True, help="Open the HTML page in a browser.")
 @click.option(
     "--strict",
     is_flag=True,
@@ -131,6 +132,7 @@ def report(
     waivers: str | None,
     signers: str | None,
     play: bool,
+    opens: bool,
     strict: bool,
     output_format: str | None,
     output: str | None,
@@ -149,8 +151,7 @@ def report(
     from fretc.attestation.signatures import SIGNERS
     from fretc.audit.evidence.reader import not_audited
     from fretc.report.make import make
-    from fretc.verification.ajpf_results import default_paths as results
-    from fretc.verification.reader import default_path
+    from fretc.verification.reader import ajpf_results, default_path
 
     outputs = _outputs(output_format, output, places)
     for kind, _ in outputs:
@@ -167,14 +168,14 @@ def report(
     signers = signers or sibling_path(requirements, SIGNERS)
     verification = verification or default_path()
     analysis = analysis or analyzed()
-    ajpf_results = ajpf or results()
+    results = ajpf or ajpf_results()
     outcome = make(
         project,
         evidence,
         lock=lock,
         waivers=waivers,
         verification=verification,
-        ajpf=ajpf_results,
+        ajpf=results,
         signers=signers,
         analysis=analysis,
         requirements=requirements,
@@ -187,9 +188,12 @@ def report(
     inset = _inset(project, outcome.details.evidence, analysis) if play else None
     subject = FormInput(outcome.report, project, outcome.details, outcome.diagnostics, inset)
     others = (bindings, hazards, verification, analysis, lock, waivers, signers)
-    inputs = filter(None, (*others, *ajpf_results))
+    inputs = filter(None, (*others, *results))
     read = [evidence, *files, *companions(files), *inputs, *outcome.details.logs]
     _deliver(outputs, subject, read)
+    if opens:
+        for path in [path for kind, path in outputs if kind.name == "html" and path != "-"]:
+            click.launch(path)
     if has_errors([*project.diagnostics, *outcome.diagnostics]):
         raise SystemExit(EXIT_USAGE)
     raise SystemExit(_status(outcome.report) if strict else EXIT_OK)

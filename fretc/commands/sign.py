@@ -240,11 +240,15 @@ def _evidence(audited: EvidenceSource, proofs: Proofs | None) -> Signable:
 
 
 def _summary_of_evidence(audited: EvidenceSource) -> Iterator[str]:
+    from fretc.audit.evidence.verdicts import ASSUMPTION_BROKEN
     from fretc.audit.measurements.confidence_intervals import REFUTED
     from fretc.report.model.assessments import SingleAudit
     from monitors import kernel
 
-    audits = [SingleAudit(summary, ()) for _, summary in audited.summaries()]
+    audits = [
+        SingleAudit(summary, (), is_assumption=summary.verdict == ASSUMPTION_BROKEN)
+        for _, summary in audited.summaries()
+    ]
     counts = Counter(audit.verdict for audit in audits)
     totals = ", ".join(f"{count} {verdict}" for verdict, count in sorted(counts.items()))
     yield f"evidence {audited.file}: {totals}"
@@ -252,6 +256,8 @@ def _summary_of_evidence(audited: EvidenceSource) -> Iterator[str]:
         result = audit.result
         if audit.verdict == kernel.VIOLATED:
             yield f"  {result.requirement} is violated in {result.run}"
+        if audit.verdict == ASSUMPTION_BROKEN:
+            yield f"  the assumption {result.requirement} is broken in {result.run}"
         if not result.log:
             yield f"  the SHA-256 of {result.run} is unknown: the log itself is not signed"
     for one in audited.probabilities:

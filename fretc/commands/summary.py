@@ -10,7 +10,7 @@ from typing import Any, NoReturn
 
 import click
 
-from fretc.audit.evidence.verdicts import VERDICTS
+from fretc.audit.evidence.verdicts import ASSUMPTION_BROKEN, VERDICTS
 from fretc.audit.outputs.summary import (
     COUNTED,
     MOST,
@@ -88,14 +88,20 @@ def _text(summary: TableSummary) -> str:
 
 
 def _verdicts(summary: TableSummary) -> tuple[list[str], list[list[str]]]:
-    counted = (f"{VERDICTS[word].sign.glyph} {word}" for word in COUNTED.values())
+    records = summary.requirements.records
+    columns = {
+        name: word
+        for name, word in COUNTED.items()
+        if word != ASSUMPTION_BROKEN or any(row[name] for row in records)
+    }
+    counted = (f"{VERDICTS[word].sign.glyph} {word}" for word in columns.values())
     head = ["requirement", "runs", *counted, "violations"]
     rows = [
         [
             row["requirement"],
-            *(f"{row[name]:,}" for name in ("runs", *COUNTED, "violations")),
+            *(f"{row[name]:,}" for name in ("runs", *columns, "violations")),
         ]
-        for row in summary.requirements.records
+        for row in records
     ]
     return head, rows
 

@@ -62,9 +62,9 @@ def test_program(checked: RequirementSet, options: ProgramOptions, protected: It
     """
     words = _words(options.command)
     output = options.output or "build/tests/conformance.json"
-    chosen = roles([*checked.requirements, *checked.assumed])
-    if isinstance(chosen, tuple):
-        fail(*chosen)
+    chosen, mistakes = roles([*checked.requirements, *checked.assumed])
+    if mistakes:
+        fail(*mistakes)
     wrong: Diagnostic | None = None
     stopped = False
     try:

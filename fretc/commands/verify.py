@@ -157,9 +157,9 @@ def verify(
     traces: str | None,
 ) -> None:
     """The command; its help is `_HELP`."""
-    from fretc.verification.ajpf_results import default_paths
     from fretc.verification.engines.sandbox import CallLimits
     from fretc.verification.layers.request import Request
+    from fretc.verification.reader import ajpf_results
     from fretc.verification.text_output import lines
     from fretc.verification.verify import missing_prover, refusals
 
@@ -170,7 +170,7 @@ def verify(
     if agent is not None:
         demanded = (*demanded, Layer.AGENT)
     project = _project(files, requirements, bindings)
-    results = ajpf or (default_paths() if Layer.AJPF in layer_names else ())
+    results = ajpf or (ajpf_results() if Layer.AJPF in layer_names else ())
     request = Request(
         layers=layer_names,
         limits=CallLimits(seconds=limit),

@@ -353,8 +353,8 @@ def _asked_again(
 ) -> Sequence[Recheck]:
     """The repeated analysis of the requirement set, compared with the stored one."""
     from fretc.analysis.analysis import AnalysisOptions
-    from fretc.analysis.arena.roles import roles
-    from fretc.analysis.assumptions import assumptions
+    from fretc.analysis.arena.systems import systems
+    from fretc.analysis.assumptions import assumptions, guarantees
     from fretc.analysis.evidence import changes
     from fretc.commands.analyze import asked
     from fretc.reproduction.outcome import TOGETHER, differs, unknown
@@ -364,17 +364,16 @@ def _asked_again(
         why = f"the analysis was not repeated: `{'--no-analysis' if skip else '--only'}`"
         return (unknown(TOGETHER, "", why),)
     document = known.document
-    in_force = project.in_force
+    in_force = guarantees(project.in_force)
     requirements = [
         requirement for requirement in in_force if requirement.id in document.requirements
     ]
-    assumed, remarks = assumptions(in_force, project.declarations)
-    chosen = roles([*requirements, *assumed])
+    assumed, remarks = assumptions(project.in_force, project.declarations)
     if has_errors(remarks):
         fail(*remarks)
-    if isinstance(chosen, tuple):
-        fail(*chosen)
-    now, stopped = asked(requirements, assumed, chosen, AnalysisOptions(as_fret=document.as_fret))
+    examined = systems(requirements, assumed)
+    print_diagnostics(examined.mistakes)
+    now, stopped = asked(requirements, assumed, examined, AnalysisOptions(as_fret=document.as_fret))
     if stopped:
         raise SystemExit(EXIT_INTERRUPTED)
     old = [differs(TOGETHER, "", why) for why in changes(document, requirements, assumed)]
@@ -398,7 +397,7 @@ def _report(
     from compiler.project.paths import sibling_path
     from fretc.attestation.signatures import SIGNERS
     from fretc.report.make import make
-    from fretc.verification.ajpf_results import default_paths
+    from fretc.verification.reader import ajpf_results
 
     source = or_fail(read(path))
     names = [sibling_path(requirements, name) for name in ("fretc.lock", "waivers.toml", SIGNERS)]
@@ -408,7 +407,7 @@ def _report(
         lock=names[0],
         waivers=names[1],
         verification=verification,
-        ajpf=default_paths(),
+        ajpf=ajpf_results(),
         signers=names[2],
         analysis=analysis,
         requirements=requirements,

@@ -1,8 +1,9 @@
-"""The container formats of logs, recognized by the first bytes of a file: MCAP and ROS bags."""
+"""The container formats of logs: MCAP, bags, ULog, Arrow by first bytes, tables by suffix."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping
+from pathlib import PurePath
 
 from fretc.logs import log_diagnostics
 from fretc.logs.mcap.container import MAGIC
@@ -11,11 +12,14 @@ from fretc.logs.mcap.damage import Damage
 from fretc.logs.mcap.messages import Sink
 from fretc.logs.signals.integrity import Integrity
 from fretc.logs.signals.samples import Gap
-from fretc.logs.storage import bags
+from fretc.logs.storage import bags, ulog
 from fretc.logs.storage.bags import NOWHERE
 from fretc.logs.storage.inputs import OpenLog
+from fretc.logs.storage.log_names import TEXT_TABLES
 from fretc.logs.storage.parts import FileContents
 from fretc.logs.storage.splits import unclosed_backup
+from fretc.logs.tables import contents as tables
+from fretc.logs.tables.arrow_rows import ARROW, PARQUET
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
@@ -60,6 +64,10 @@ def _read(
     for magic, read in CONTAINERS.items():
         if start.startswith(magic):
             return read(log, start, sink, integrity, span, wanted)
+    suffix = PurePath(span.source.name).suffix.lower()
+    if suffix in TEXT_TABLES:
+        log.stream.seek(0)
+        return tables.read(log, sink, span, suffix)
     return log_diagnostics.not_a_log(start, span)
 
 
@@ -91,6 +99,28 @@ def _reindexed(file: str, span: Gap | None) -> Iterator[tuple[Damage, Gap | None
         yield Damage(NOWHERE, what, code=Code.REINDEXED), (span[1], span[1])
 
 
+def _ulog(
+    log: OpenLog,
+    start: bytes,
+    sink: Sink,
+    integrity: Integrity,
+    span: Span,
+    wanted: Collection[str],
+) -> FileContents | Diagnostic:
+    return ulog.read(log, sink, span)
+
+
+def _arrow(
+    log: OpenLog,
+    start: bytes,
+    sink: Sink,
+    integrity: Integrity,
+    span: Span,
+    wanted: Collection[str],
+) -> FileContents | Diagnostic:
+    return tables.read_arrow(log, sink, span)
+
+
 def _mcap(
     log: OpenLog,
     start: bytes,
@@ -119,4 +149,11 @@ Container = Callable[
     [OpenLog, bytes, Sink, Integrity, Span, Collection[str]], FileContents | Diagnostic
 ]
 """The reader of one container format; its last argument is the first bytes of the file."""
-CONTAINERS: Mapping[bytes, Container] = {MAGIC: _mcap, bags.BAG: _bag, bags.DB3: _bag}
+CONTAINERS: Mapping[bytes, Container] = {
+    MAGIC: _mcap,
+    bags.BAG: _bag,
+    bags.DB3: _bag,
+    ulog.MAGIC: _ulog,
+    PARQUET: _arrow,
+    ARROW: _arrow,
+}

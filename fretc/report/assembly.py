@@ -15,6 +15,7 @@ from fretc.audit.evidence.result_summaries import EvidenceSource, ResultSummarie
 from fretc.audit.evidence.schema import Selection
 from fretc.audit.evidence.verdicts import NOT_EXERCISED, RETIRED
 from fretc.audit.measurements.confidence_intervals import SUPPORTED
+from fretc.audit.outputs.broken_assumptions import broken_assumptions
 from fretc.audit.selection.choice import in_words
 from fretc.report.across.assembly import across
 from fretc.report.diagnostics import idle_waivers, stale_evidence
@@ -54,9 +55,10 @@ from monitors import kernel
 
 def report(inputs: Inputs) -> tuple[ReportView, Details, tuple[Diagnostic, ...]]:
     """The report, the evidence behind its rows, and diagnostics about its files."""
-    project, evidence = inputs.project, inputs.evidence
+    project = inputs.project
     lock, together = inputs.lock, inputs.together
-    summaries = ResultSummaries.of(evidence) if evidence else None
+    summaries = ResultSummaries.of(inputs.evidence) if inputs.evidence else None
+    evidence = summaries.source if summaries else None
     runs_by_key = runs(summaries)
     all_runs = tuple(runs_by_key.values())
     assessed = assessments(project, summaries, lock, inputs.waivers, inputs.proofs, together)
@@ -78,6 +80,7 @@ def report(inputs: Inputs) -> tuple[ReportView, Details, tuple[Diagnostic, ...]]
     reservations = (
         *(line for view in sections for line in _reservations(view, longest)),
         *(line for assessment in assessed for line in reviews.reservations(assessment)),
+        *_of_assumptions(assessed, project),
     )
     changes = reviews.changes(assessed, project)
     groups = reviews.change_groups(assessed, changes)
@@ -219,13 +222,27 @@ def _reservations(view: RequirementView, longest: Mapping[str, ResultView]) -> S
     return (*average, *([view.limit] if view.limit else []), *late, *draft)
 
 
+def _of_assumptions(assessed: Sequence[Assessment], project: Project) -> Iterator[str]:
+    """A line for each assumption that runs do not keep."""
+    results = (
+        (audit.result.run, audit.result.requirement, audit.verdict)
+        for assessment in assessed
+        if assessment.verdict != RETIRED
+        for audit in assessment.audits
+    )
+    for each in broken_assumptions(results, project.formalized):
+        yield each.in_words
+
+
 def _claims(assessed: Sequence[Assessment], runs: int, selection: Selection | None) -> str:
     active = [assessment for assessment in assessed if assessment.verdict != RETIRED]
     drafts = sum(assessment.entry.status == "draft" for assessment in active)
     retired = len(assessed) - len(active)
+    assumed = sum(assessment.entry.is_assumption for assessment in active)
     parts = [
         f"{phrases.times(len(active), 'requirement')} in force",
         f"{drafts} of them {'a draft' if drafts == 1 else 'drafts'}" if drafts else "",
+        f"with {phrases.times(assumed, 'assumption')}" if assumed else "",
         f"{retired} retired" if retired else "",
         f"audited against {phrases.times(runs, 'run')}" if runs else "not audited",
         "" if selection is None else f"which are {in_words(selection)}",

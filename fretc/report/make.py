@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 
 from compiler.files.dates import today
 from compiler.formalization.formalized import FormalizedRequirement
+from compiler.logic.claims import Layer, Proof
 from compiler.project.project import Project
 from fretc.analysis.evidence import read as read_analysis
 from fretc.attestation.signatures import read_signatures
@@ -23,7 +24,6 @@ from fretc.report.sections.details import Details
 from fretc.traceability.lock import read as read_lock
 from fretc.traceability.waivers import Waiver
 from fretc.traceability.waivers import read as read_waivers
-from fretc.verification.ajpf_results import ajpf_proofs, merged
 from fretc.verification.reader import read as read_proofs
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -108,7 +108,9 @@ def make(
     if isinstance(signatures, Diagnostic):
         return ReportBuild(None, (signatures,))
     waivers_in_force, waiver_diagnostics = _waivers_in_force(project, waivers)
-    proofs_of_ajpf, ajpf_diagnostics = ajpf_proofs(project.formalized, ajpf)
+    all_proofs, ajpf_diagnostics = _with_ajpf(
+        proofs.proofs if proofs else (), project.formalized, ajpf
+    )
     # A missing file of evidence is only a note: the report shows that nothing was exercised.
     present, notes = (None, (audits,)) if isinstance(audits, Diagnostic) else (audits, ())
     inputs = Inputs(
@@ -118,7 +120,7 @@ def make(
         reviews,
         waivers_in_force,
         proofs,
-        merged(proofs.proofs if proofs else (), proofs_of_ajpf),
+        all_proofs,
         signatures,
         together,
         NamedFiles(requirements, hazards, lock, waivers, signers, tuple(ajpf), play),
@@ -133,6 +135,18 @@ def make(
         project.formalized,
         details,
     )
+
+
+def _with_ajpf(
+    proofs: Sequence[Proof], requirements: Sequence[FormalizedRequirement], paths: Sequence[str]
+) -> tuple[tuple[Proof, ...], tuple[Diagnostic, ...]]:
+    """The proofs with those of AJPF's results, and the diagnostics of these files."""
+    if not paths and not any(one.layer == Layer.AJPF for one in proofs):
+        return tuple(proofs), ()
+    from fretc.verification.ajpf_results import ajpf_proofs, merged  # 20 ms: all that makes bundles
+
+    present, diagnostics = ajpf_proofs(requirements, paths)
+    return merged(proofs, present), diagnostics
 
 
 def _waivers_in_force(

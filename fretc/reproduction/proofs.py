@@ -18,10 +18,10 @@ from compiler.project.project import Project
 from compiler.targets.python import monitor
 from fretc.reproduction.outcome import PROOFS, ItemOutcome, Recheck, differs, unknown
 from fretc.reproduction.texts import other_build, remade
-from fretc.verification.ajpf_results import ajpf_proofs, default_paths
+from fretc.verification.ajpf_results import ajpf_proofs
 from fretc.verification.engines.sandbox import CallLimits
 from fretc.verification.layers.request import Progress, Request
-from fretc.verification.reader import Proofs
+from fretc.verification.reader import Proofs, ajpf_results
 from fretc.verification.verify import prove
 from fretish.diagnostics.diagnostic import Diagnostic
 
@@ -126,7 +126,7 @@ def _prove(
         header=header,
         demanded=(Layer.AGENT,) if of_agent - plans_agent else (),
         provers=sorted({_prover(record.engine) for record in records} - {""}),
-        ajpf=ajpf_proofs(requirements, default_paths())[0] if Layer.AJPF in layers else (),
+        ajpf=ajpf_proofs(requirements, ajpf_results())[0] if Layer.AJPF in layers else (),
         progress=progress,
     )
     return prove(replace(project, formalized=tuple(requirements)), request)

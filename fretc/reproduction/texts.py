@@ -1,4 +1,4 @@
-"""Monitors in C, Rust or JavaScript, generated again to recheck proofs about them."""
+"""Monitors in C, Rust, Java or JavaScript, generated again to recheck proofs about them."""
 
 from __future__ import annotations
 

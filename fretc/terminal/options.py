@@ -17,8 +17,10 @@ T = TypeVar("T")
 Command = Callable[..., Any]
 LOG_EXTRAS = {
     "bags": "bags (.bag, .db3) and messages defined in IDL",
+    "parquet": "Parquet and Arrow",
     "protobuf": "messages in Protobuf",
     "remote": "URLs",
+    "ulog": "ULog",
 }
 """Extras for commands that read logs, and what needs them."""
 

@@ -11,8 +11,8 @@ from itertools import chain
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.project.project import Project
-from fretc.analysis.arena.roles import roles
-from fretc.analysis.assumptions import assumptions
+from fretc.analysis.arena.systems import systems
+from fretc.analysis.assumptions import assumptions, guarantees
 from fretc.analysis.components import by_outputs
 from fretc.analysis.evidence import AnalyzedRequirement, AnalyzedSet, members
 from fretc.analysis.findings import Analysis, RealizabilityVerdict
@@ -45,11 +45,11 @@ def answers(analyzed: AnalyzedSet | None, project: Project) -> Mapping[str, Real
     if analyzed is None:
         return {}
     document = analyzed.document
-    requirements = project.in_force
-    assumed, _ = assumptions(requirements, project.declarations)
+    requirements = guarantees(project.in_force)
+    assumed, _ = assumptions(project.in_force, project.declarations)
     old = _differences(document.requirements, members(requirements))
     promises = _differences(document.assumptions, members(assumed))
-    now = _components(requirements, assumed, document.requirements)
+    now = _components(requirements, assumed)
     answers_of: dict[str, Realizability] = {}
     for requirement in requirements:
         if requirement.id in document.requirements:
@@ -90,28 +90,14 @@ def _component(analysis: Analysis, id: str) -> tuple[str, ...]:
 def _components(
     requirements: Sequence[FormalizedRequirement],
     assumed: Sequence[FormalizedRequirement],
-    analyzed: Mapping[str, AnalyzedRequirement],
 ) -> Mapping[str, tuple[str, ...]]:
-    """Requirement id → ids in its present component; all ids if the roles are unknown."""
-    systems = {
-        requirement.sentence.component for requirement in requirements if requirement.id in analyzed
-    }
-    own = [requirement for requirement in requirements if requirement.sentence.component in systems]
-    for candidates in (requirements, own):  # An input of one system may be an output of another.
-        chosen = roles([*candidates, *assumed])
-        if not isinstance(chosen, tuple):
-            groups = [
-                [requirement.id for requirement in group]
-                for group in by_outputs(candidates, assumed, chosen)
-            ]
-            group_of = {id: tuple(ids) for ids in groups for id in ids}
-            return {
-                requirement.id: group_of.get(requirement.id, ()) for requirement in requirements
-            }
-    return dict.fromkeys(
-        (requirement.id for requirement in requirements),
-        tuple(requirement.id for requirement in requirements),
-    )
+    """Requirement id → ids in its present component."""
+    groups: dict[str, tuple[str, ...]] = {}
+    for system in systems(requirements, assumed).every:
+        for group in by_outputs(system.requirements, system.assumptions, system.roles):
+            ids = tuple(requirement.id for requirement in group)
+            groups |= dict.fromkeys(ids, ids)
+    return groups
 
 
 def _differences(

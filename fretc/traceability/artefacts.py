@@ -55,7 +55,12 @@ def monitors(
     }
 
 
-_LANGUAGES = {"_monitor.c": "c", "lib.rs": "rust", "_monitor.mjs": "js"}
+_LANGUAGES = {
+    "_monitor.c": "c",
+    "lib.rs": "rust",
+    "_monitor.mjs": "js",
+    "Monitor.java": "java",
+}
 """End of a file name → target, for monitors in other languages than Python."""
 
 
@@ -75,7 +80,13 @@ def compiled_monitor(requirement: FormalizedRequirement, file: str) -> str:
     return ""
 
 
-_JOINT = {"monitors.py": "monitor", "monitors.c": "c", "lib.rs": "rust", "monitors.mjs": "js"}
+_JOINT = {
+    "monitors.py": "monitor",
+    "monitors.c": "c",
+    "lib.rs": "rust",
+    "monitors.mjs": "js",
+    "Monitors.java": "java",
+}
 """Name of a file with a monitor for several requirements → target."""
 
 

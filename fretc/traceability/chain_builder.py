@@ -218,6 +218,7 @@ class _ChainBuilder:
             text=entry.text,
             rationale=entry.rationale,
             status=entry.status,
+            kind=entry.kind if entry.is_assumption else "",
             parents=entry.parents,
             verify=entry.verify,
             params=dict(entry.params),

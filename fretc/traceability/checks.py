@@ -16,6 +16,7 @@ from compiler.logic.claims import METHODS
 from compiler.project.hazards import without_hazard
 from compiler.project.project import Project
 from compiler.targets.target import TargetOptions
+from fretc.analysis.arena.roles import role
 from fretc.traceability.changes import in_words
 from fretc.traceability.lock import ReviewStatus
 from fretish.bindings.declarations import Role
@@ -45,6 +46,7 @@ def checks(project: Project, statuses: Sequence[ReviewStatus]) -> tuple[Diagnost
             *_own_triggers(requirement, project),
             *_never_so(requirement),
             *_planned(requirement),
+            *_of_outputs(requirement),
         )
     ]
     options = TargetOptions(declarations=project.declarations)
@@ -96,6 +98,21 @@ def _never_so(requirement: FormalizedRequirement) -> Iterator[Diagnostic]:
             part=printed(part),
             requirement=requirement.id,
             when="always" if value else "never",
+        )
+
+
+# Assumptions -----------------------------------------------------------------------------------
+
+
+def _of_outputs(requirement: FormalizedRequirement) -> Iterator[Diagnostic]:
+    """F563 for an assumption whose variables the system chooses."""
+    players = {role(requirement, name) for name in requirement.variables}
+    if requirement.entry.is_assumption and players == {Role.OUTPUT}:
+        yield diagnostic(
+            "assumption_about_outputs",
+            requirement.entry.place("kind"),
+            requirement=requirement.id,
+            names=", ".join(f"`{name}`" for name in requirement.variables),
         )
 
 

@@ -42,7 +42,8 @@ def print_of_log(result: ResultSummary) -> str:
 def print_of_header(header: texts.ParentRequirement) -> str:
     """The texts and parents of a requirement, without status and planned methods."""
     words = [header.title, header.text, header.rationale]
-    return digest({"texts": _normal(words), "parents": sorted(header.parents)})
+    kind = {"kind": header.kind} if header.kind else {}
+    return digest({"texts": _normal(words), "parents": sorted(header.parents), **kind})
 
 
 def print_of_hazard(hazard: Hazard) -> str:

@@ -103,7 +103,7 @@ def _of_sentence(id: str, texts: ReviewedTexts) -> Iterator[tuple[Key, ReviewTex
 
 def _of_header(id: str, texts: ReviewedTexts) -> Iterator[tuple[Key, ReviewText]]:
     node = ChainItem(TEXT, id)
-    for name in ("title", "text", "rationale"):
+    for name in ("title", "text", "rationale", "kind"):
         text = _line(getattr(texts, name))
         yield ("", "", name), ReviewText(node, name, text, text)
     yield (

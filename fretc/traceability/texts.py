@@ -32,6 +32,8 @@ class ParentRequirement(Record, frozen=True, omit_defaults=True):
     text: str = ""
     rationale: str = ""
     parents: tuple[str, ...] = ()
+    kind: str = ""
+    """`assumption`, or empty."""
 
 
 class HazardTexts(Record, frozen=True, omit_defaults=True):
@@ -69,6 +71,8 @@ class ReviewedTexts(Record, frozen=True, omit_defaults=True):
     text: str = ""
     rationale: str = ""
     status: str = ""
+    kind: str = ""
+    """`assumption`, or empty."""
     parents: tuple[str, ...] = ()
     verify: tuple[str, ...] = ()
     params: dict[str, str] = field(default_factory=dict)
@@ -105,12 +109,13 @@ def as_table(texts: ReviewedTexts) -> Table:
 def above(requirement: RequirementEntry) -> ParentRequirement:
     """The texts of a parent requirement."""
     texts = (requirement.title, requirement.text, requirement.rationale)
-    return ParentRequirement(*texts, requirement.parents)
+    kind = requirement.kind if requirement.is_assumption else ""
+    return ParentRequirement(*texts, requirement.parents, kind)
 
 
 def header_of(texts: ReviewedTexts) -> ParentRequirement:
     """The header texts of the requirement itself."""
-    return ParentRequirement(texts.title, texts.text, texts.rationale, texts.parents)
+    return ParentRequirement(texts.title, texts.text, texts.rationale, texts.parents, texts.kind)
 
 
 def hazard_texts(hazard: Hazard) -> HazardTexts:

@@ -12,6 +12,7 @@ from typing import Any
 
 from compiler.files.dates import is_date
 from compiler.files.text_files import read as read_text
+from fretc.audit.evidence.verdicts import ASSUMPTION_BROKEN
 from fretc.audit.measurements.confidence_intervals import REFUTED
 from fretish.bindings.canonical import digest
 from fretish.classes.frozen import dataclass
@@ -28,6 +29,7 @@ UNFORMALIZED, NOT_EXERCISED = "unformalized", "not exercised"
 VERDICTS = (
     kernel.VIOLATED,
     REFUTED,
+    ASSUMPTION_BROKEN,
     UNFORMALIZED,
     kernel.NO_DATA,
     kernel.INCONCLUSIVE,

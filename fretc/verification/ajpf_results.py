@@ -38,8 +38,6 @@ from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
 from fretish.reading.recursion import with_recursion_limit
 
-PLACES = "build/*_ajpf/result.json"
-"""Default paths of the results of `--emit ajpf-bundle -o build/` and `run.py`."""
 _UNHASHED = ("README.md",)
 """Files of a bundle on which no verdict depends."""
 _ASSUMED = (
@@ -87,11 +85,6 @@ class AjpfResult:
     engine: str
     files: Mapping[str, str]
     checks: tuple[Check, ...]
-
-
-def default_paths() -> tuple[str, ...]:
-    """The result files at the default paths."""
-    return tuple(sorted(map(str, Path().glob(PLACES))))
 
 
 def ajpf_proofs(

@@ -38,6 +38,15 @@ DEFAULT = "build/verification.json"
 """Default path of the output of `fretc verify`."""
 
 
+AJPF_RESULTS = "build/*_ajpf/result.json"
+"""Default paths of the results of `--emit ajpf-bundle -o build/` and `run.py`."""
+
+
+def ajpf_results() -> tuple[str, ...]:
+    """The result files of AJPF at the default paths."""
+    return tuple(sorted(map(str, Path().glob(AJPF_RESULTS))))
+
+
 def read(path: str) -> Proofs | Diagnostic:
     """Read and check a file of `fretc verify`."""
     file = records.read(

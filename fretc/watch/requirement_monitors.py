@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from operator import itemgetter
 
+from fretc.audit.evidence.verdicts import of_kind
 from fretc.audit.measurements.judgement import judge
 from fretc.audit.plan import Plan
 from fretc.logs.stream import ClockTick, Withdrawn
@@ -30,6 +31,7 @@ class RequirementMonitors:
         self._picks = tuple(_pick(tuple(monitor.PROPOSITIONS)) for monitor in self.monitors)
         self.counted = frozenset(claim.id for claim in plan.claims if claim.chance is not None)
         """Requirements with a probability: no single run shows whether they hold."""
+        self._assumed = frozenset(claim.id for claim in plan.claims if claim.is_assumption)
         self.ledger = Ledger(self.monitors, kept)
         self._statuses: tuple[RequirementStatus, ...] | None = None
         """The statuses after the last tick, once they were read."""
@@ -106,6 +108,7 @@ class RequirementMonitors:
 
     def audit_verdict(self, requirement: str, verdict: str) -> str:
         """The verdict in an audit of the run; a run that alone decides nothing is inconclusive."""
+        verdict = of_kind(verdict, is_assumption=requirement in self._assumed)
         decides = requirement not in self.counted or verdict in (kernel.VACUOUS, kernel.NO_DATA)
         return verdict if decides else str(kernel.INCONCLUSIVE)
 

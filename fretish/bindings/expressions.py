@@ -12,16 +12,20 @@ from fractions import Fraction
 from functools import cache
 from typing import Any, cast
 
-from lark import Lark, Token, v_args
-from lark.exceptions import UnexpectedCharacters, UnexpectedInput, VisitError
-from lark.visitors import Transformer_NonRecursive
-
 from fretish import expressions as e
 from fretish.diagnostics.diagnostic import Code, Diagnostic, DiagnosticError, did_you_mean
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 from fretish.reading.caching import cache_by_identity
 from fretish.reading.grammars import Grammar
+from fretish.reading.lalr import (
+    Parser,
+    SyntaxTreeNode,
+    Token,
+    UnexpectedCharacterError,
+    UnexpectedTokenError,
+    build,
+)
 from fretish.units import (
     DIMENSIONLESS,
     Dimension,
@@ -39,13 +43,13 @@ Kind = Dimension | None
 def parse(text: Span) -> e.Expression | Diagnostic:
     """Parse the whole text as one expression; spans of the tree refer to the text's source."""
     try:
-        return cast(e.Expression, _ExpressionBuilder(text).transform(_lark().parse(text.text)))
-    except UnexpectedInput as error:
-        return _unexpected(error, text)
-    except VisitError as error:
-        if isinstance(error.orig_exc, _ExpressionError):
-            return error.orig_exc.diagnostic
-        raise
+        return cast(e.Expression, build(_parser().parse(text.text), _ExpressionBuilder(text)))
+    except UnexpectedTokenError as error:
+        return _unexpected(text.part(error.token.start_pos, error.token.end_pos), text)
+    except UnexpectedCharacterError as error:
+        return _unexpected(text.part(error.position, error.position + 1), text)
+    except _ExpressionError as error:
+        return error.diagnostic
 
 
 class _ExpressionError(DiagnosticError):
@@ -53,34 +57,28 @@ class _ExpressionError(DiagnosticError):
 
 
 @cache
-def _lark() -> Lark:
+def _parser() -> Parser:
     return GRAMMAR.parser()
 
 
-GRAMMAR = Grammar(
-    "fretish.bindings", "expressions", {"lexer": "basic", "maybe_placeholders": False}
-)
+GRAMMAR = Grammar("fretish.bindings", "expressions")
 
 
 def _parts(children: list[Any]) -> list[Any]:
     return [child for child in children if not isinstance(child, Token)]
 
 
-@v_args(inline=False)
-class _ExpressionBuilder(Transformer_NonRecursive[Token, Any]):
+class _ExpressionBuilder:
     def __init__(self, text: Span) -> None:
-        super().__init__()
         self._text = text
 
     def _span(self, token: Token) -> Span:
-        assert token.start_pos is not None
-        assert token.end_pos is not None
         return self._text.part(token.start_pos, token.end_pos)
 
-    def start(self, children: list[Any]) -> e.Expression:
+    def start(self, _node: SyntaxTreeNode, children: list[Any]) -> e.Expression:
         return cast(e.Expression, children[0])
 
-    def persistence(self, children: list[Any]) -> e.Expression:
+    def persistence(self, _node: SyntaxTreeNode, children: list[Any]) -> e.Expression:
         arg, token = children[0], children[-1]
         duration = nanoseconds(str(token))
         if duration is None:
@@ -90,37 +88,37 @@ class _ExpressionBuilder(Transformer_NonRecursive[Token, Any]):
             raise _ExpressionError(diagnostic("not_a_duration", span, text=text.strip()))
         return e.Persistence(arg, duration)
 
-    def either(self, children: list[Any]) -> e.Expression:
+    def either(self, _node: SyntaxTreeNode, children: list[Any]) -> e.Expression:
         return e.either(*_parts(children))
 
-    def both(self, children: list[Any]) -> e.Expression:
+    def both(self, _node: SyntaxTreeNode, children: list[Any]) -> e.Expression:
         return e.both(*_parts(children))
 
-    def not_(self, children: list[Any]) -> e.Expression:
+    def not_(self, _node: SyntaxTreeNode, children: list[Any]) -> e.Expression:
         return e.Not(*_parts(children))
 
-    def compare(self, children: list[Token]) -> str:
+    def compare(self, _node: SyntaxTreeNode, children: list[Token]) -> str:
         return "=" if children[0] == "==" else str(children[0])
 
-    def comparison(self, children: list[Any]) -> e.Expression:
+    def comparison(self, _node: SyntaxTreeNode, children: list[Any]) -> e.Expression:
         left, op, right = children
         return e.Comparison(op, left, right)
 
-    def arithmetic(self, children: list[Any]) -> e.Expression:
+    def arithmetic(self, _node: SyntaxTreeNode, children: list[Any]) -> e.Expression:
         left, op, right = children
         return e.Arithmetic(cast(e.ArithmeticOperator, str(op)), left, right)
 
-    def power(self, children: list[Any]) -> e.Expression:
+    def power(self, _node: SyntaxTreeNode, children: list[Any]) -> e.Expression:
         base, _, exponent = children
         span = self._span(exponent)
         digits = exponent.strip()
         span = span.part(len(exponent) - len(digits), len(exponent))
         return e.Arithmetic("^", base, e.Number(digits, span))
 
-    def negation(self, children: list[Any]) -> e.Expression:
+    def negation(self, _node: SyntaxTreeNode, children: list[Any]) -> e.Expression:
         return e.Negation(*_parts(children))
 
-    def quantity(self, children: list[Token]) -> e.Expression:
+    def quantity(self, _node: SyntaxTreeNode, children: list[Token]) -> e.Expression:
         text = str(children[0])
         split = next(i for i, c in enumerate(text) if _begins_unit(text, i, c))
         name = text[split:].strip()
@@ -128,19 +126,19 @@ class _ExpressionBuilder(Transformer_NonRecursive[Token, Any]):
             raise _ExpressionError(unknown_unit(name, self._span(children[0])))
         return e.Quantity(text[:split].strip(), name, self._span(children[0]))
 
-    def number(self, children: list[Token]) -> e.Expression:
+    def number(self, _node: SyntaxTreeNode, children: list[Token]) -> e.Expression:
         return e.Number(str(children[0]), self._span(children[0]))
 
-    def truth(self, children: list[Token]) -> e.Expression:
+    def truth(self, _node: SyntaxTreeNode, children: list[Token]) -> e.Expression:
         return e.Truth(children[0] == "true")
 
-    def word(self, children: list[Token]) -> e.Expression:
+    def word(self, _node: SyntaxTreeNode, children: list[Token]) -> e.Expression:
         return e.Word(str(children[0])[1:-1], self._span(children[0]))
 
-    def name(self, children: list[Token]) -> e.Expression:
+    def name(self, _node: SyntaxTreeNode, children: list[Token]) -> e.Expression:
         return e.Name(str(children[0]), self._span(children[0]))
 
-    def call(self, children: list[Any]) -> e.Expression:
+    def call(self, _node: SyntaxTreeNode, children: list[Any]) -> e.Expression:
         name, *args = children
         return e.Call(str(name), tuple(args), self._span(name))
 
@@ -381,16 +379,10 @@ def _unknown_function(name: str, span: Span) -> Diagnostic:
     return diagnostic("unknown_function", span, name=name, functions=", ".join(FUNCTIONS))
 
 
-def _unexpected(error: UnexpectedInput, text: Span) -> Diagnostic:
+def _unexpected(part: Span, text: Span) -> Diagnostic:
+    """The diagnostic of an expression in which this part is unexpected."""
     if text.text.startswith("TODO"):
         return diagnostic("empty_expression", text)
-    at = error.pos_in_stream
-    length = 1
-    if not isinstance(error, UnexpectedCharacters):
-        token = cast(Any, error).token
-        length = len(token) if token.type != "$END" else 0
-        at = len(text.text) if token.type == "$END" else token.start_pos
-    span = text.part(at or 0, (at or 0) + length)
-    if not span.text:
-        return diagnostic("expression_ends", span)
-    return diagnostic("misplaced_in_expression", span, text=span.text)
+    if not part.text:
+        return diagnostic("expression_ends", part)
+    return diagnostic("misplaced_in_expression", part, text=part.text)

@@ -137,6 +137,7 @@ class Code(Enum):
     FOREIGN_GRID = ("F433", "the log names a beginning of the ticks that does not match it")
     MISSED = ("F434", "the watch that recorded the log has missed messages")
     GROWN = ("F431", "a log grew while it was read")
+    TIME_OF_ROWS = ("F435", "the time of the rows of a table is not stated")
     LOG_OUT_OF_TIME = ("F440", "the audit of a log took longer than allowed")
     AUDIT_OUT_OF_TIME = (
         "F441",
@@ -182,6 +183,7 @@ class Code(Enum):
     NOT_COMPARABLE = ("F560", "audits cannot be compared")
     UNREALIZABLE = ("F561", "requirements are not realizable together")
     NOT_ANALYZED = ("F562", "it is not known whether requirements are realizable together")
+    ASSUMED_OF_SYSTEM = ("F563", "an assumption is about what the system chooses")
     BAD_MANIFEST = ("F545", "the manifest cannot be read")
     OTHER_TEXTS = ("F546", "the texts of a review do not match its fingerprints")
     BAD_SIGNERS = ("F548", "the list of signers cannot be read")

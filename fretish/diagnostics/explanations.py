@@ -11,7 +11,7 @@ from typing import Any
 
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code
-from fretish.diagnostics.messages import KINDS, code_tables
+from fretish.diagnostics.messages import code_table
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,41 +47,30 @@ ACCEPTANCES = {
 @cache
 def explanations() -> dict[str, CodeExplanation]:
     """Number of a code → its explanation."""
-    return {number: each for kind in KINDS for number, each in _of_kind(kind).items()}
-
-
-def explanation(code: Code) -> CodeExplanation:
-    """The explanation of one code; only the file with this code is read."""
-    return _of_kind(code.number[1])[code.number]
+    return {code.number: explanation(code) for code in Code}
 
 
 @cache
-def _of_kind(kind: str) -> dict[str, CodeExplanation]:
-    """The explanations of the codes whose number begins with this digit."""
-    return {
-        number: CodeExplanation(
-            **{name: text for name, text in table.items() if name != "messages"}
-        )
-        for number, table in code_tables(kind).items()
-    }
+def explanation(code: Code) -> CodeExplanation:
+    """The explanation of one code; only its table is parsed."""
+    table = code_table(code)
+    return CodeExplanation(**{name: text for name, text in table.items() if name != "messages"})
 
 
 def text(code: Code) -> str:
     """The explanation of a code as text for the terminal."""
-    explanation = explanations().get(code.number)
+    known = explanation(code)
     blocks = [f"{code.number}  {code.summary}\n"]
-    if explanation is None:
-        return blocks[0]
-    blocks.append(_block(_wrapped(explanation.cause)))
-    blocks.append(_block(_wrapped(f"To fix it: {explanation.fix}")))
-    if explanation.accept:
-        where, example = ACCEPTANCES[explanation.accept]
+    blocks.append(_block(_wrapped(known.cause)))
+    blocks.append(_block(_wrapped(f"To fix it: {known.fix}")))
+    if known.accept:
+        where, example = ACCEPTANCES[known.accept]
         blocks.append(_example(f"to accept it, in {where}", example.format(code.number)))
-    if explanation.declared:
-        blocks.append(_example("bindings.toml", explanation.declared))
-    if explanation.wrong:
-        blocks.append(_example("wrong", explanation.wrong))
-        blocks.append(_example("fixed", explanation.fixed))
+    if known.declared:
+        blocks.append(_example("bindings.toml", known.declared))
+    if known.wrong:
+        blocks.append(_example("wrong", known.wrong))
+        blocks.append(_example("fixed", known.fixed))
     return "\n".join(blocks)
 
 
@@ -109,21 +98,21 @@ def _example(name: str, example: str) -> str:
 
 def as_record(code: Code) -> dict[str, Any]:
     """The explanation as JSON: `{code, summary, cause, fix, example}`; absent parts are null."""
-    explanation = explanations().get(code.number)
+    known = explanation(code)
     example = None
-    if explanation is not None and explanation.wrong:
+    if known.wrong:
         example = {
-            "file": explanation.kind,
-            "bindings": explanation.declared or None,
-            "wrong": explanation.wrong.strip("\n"),
-            "fixed": explanation.fixed.strip("\n"),
+            "file": known.kind,
+            "bindings": known.declared or None,
+            "wrong": known.wrong.strip("\n"),
+            "fixed": known.fixed.strip("\n"),
         }
     return {
         "schema": "fretc-code-2",
         "code": code.number,
         "summary": code.summary,
-        "cause": explanation.cause if explanation else None,
-        "fix": explanation.fix if explanation else None,
-        "accept": (explanation.accept or None) if explanation else None,
+        "cause": known.cause,
+        "fix": known.fix,
+        "accept": known.accept or None,
         "example": example,
     }

@@ -5,6 +5,7 @@ The name of a message is unique among all codes, and gives its code, severity, t
 
 from __future__ import annotations
 
+import re
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -14,7 +15,8 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.fixes import Fix
 from fretish.diagnostics.source import Span
 
-_FILES = Path(__file__).parent / "codes"
+FILES = Path(__file__).parent / "codes"
+"""The files of the tables, one for each first digit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,44 +31,51 @@ class Message:
 
 
 @cache
-def code_tables(kind: str) -> dict[str, dict[str, Any]]:
-    """Number of each code that begins with this digit → its table: cause, fix, messages..."""
+def code_table(code: Code) -> dict[str, Any]:
+    """The table of a code: cause, fix, messages... Only its part is parsed: all take 20 ms."""
     import tomllib  # Imported here to make the start faster.
 
-    return tomllib.loads(_text(kind))
+    text = _text(code.number[1])
+    starts = [match for match in _HEADING.finditer(text) if match[1] == code.number]
+    following = _HEADING.search(text, starts[0].end())
+    part = text[starts[0].start() : following.start() if following else len(text)]
+    table: dict[str, Any] = tomllib.loads(part)[code.number]
+    return table
+
+
+_HEADING = re.compile(r"^\[(F[0-9]{3})\]$", re.MULTILINE)
 
 
 @cache
 def _text(kind: str) -> str:
-    (file,) = _FILES.glob(f"{kind}_*.toml")
+    """The file of the codes that begin with this digit."""
+    (file,) = FILES.glob(f"{kind}_*.toml")
     return file.read_text(encoding="utf-8")
 
 
 @cache
-def messages(kind: str) -> dict[str, Message]:
-    """Name of a message → its text, for the codes that begin with this digit."""
+def messages(code: Code) -> dict[str, Message]:
+    """Name of a message → its text, for all messages of a code."""
     return {
         name: Message(
             code, row["message"], row.get("help", ""), Severity(row.get("severity", "error"))
         )
-        for code in Code
-        if code.number[1] == kind
-        for name, row in code_tables(kind)[code.number].get("messages", {}).items()
+        for name, row in code_table(code).get("messages", {}).items()
     }
 
 
-KINDS = tuple(dict.fromkeys(code.number[1] for code in Code))
-"""The first digits of the codes; each has a file."""
-
-
 def message(name: str) -> Message:
-    """The message of that name. Only its file is parsed, because all of them take 20 ms.
+    """The message of that name.
 
     Raises:
         KeyError: there is no such message.
     """
-    kind = next((kind for kind in KINDS if f".messages.{name}]" in _text(kind)), KINDS[0])
-    return messages(kind)[name]
+    for kind in dict.fromkeys(code.number[1] for code in Code):
+        before, heading, _ = _text(kind).partition(f".messages.{name}]\n")
+        if heading:
+            number = before.rpartition("[")[2]
+            return messages(next(code for code in Code if code.number == number))[name]
+    raise KeyError(name)
 
 
 def diagnostic(

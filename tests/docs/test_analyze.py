@@ -30,8 +30,8 @@ def of_project(folder: str) -> str:
     project = load_folder(folder)
     assert not isinstance(project, Diagnostic)
     assumed, _ = assumptions(project.formalized, project.declarations)
-    named = roles([*project.formalized, *assumed])
-    assert not isinstance(named, tuple)
+    named, mistakes = roles([*project.formalized, *assumed])
+    assert not mistakes
     found = analyze(project.formalized, named, assumed)
     written = {requirement.id: sentence(requirement.written) for requirement in project.formalized}
     return "\n".join(f"    {line}".rstrip() for line, _ in lines(found, written))

@@ -18,7 +18,7 @@ ROWS = [
     for line in DOCS.splitlines()
     if line.startswith("| `")
 ]
-WRONG = "whenever p and q the rover should within 0.5 seconds stopped\n"
+WRONG = "whenever p and q the rover should within 500 msec stopped\n"
 
 
 def block(start: str) -> str:

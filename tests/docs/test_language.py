@@ -24,7 +24,7 @@ from tests.monitoring import requirement
 
 PAGE = "language.md"
 TEXT = (FOLDER / PAGE).read_text("utf-8")
-GRAMMAR: Any = parser._lark()
+GRAMMAR: Any = parser.GRAMMAR.lark()
 
 
 # What the page asks for ---------------------------------------------------------------------------
@@ -77,6 +77,7 @@ def listed(name: str) -> str:
         "keywords": sorted(keywords.RESERVED),
         "units": list(units.NAMES),
         "statuses": list(documents.STATUSES),
+        "kinds": list(documents.KINDS),
     }[name]
     return ", ".join(f"`{word}`" for word in words)
 
@@ -117,7 +118,7 @@ def uses_of(grammar_rule: Rule) -> set[Use]:
 
 def uses_in(sentences: list[str]) -> set[Use]:
     """What of the grammar they are read by."""
-    grammar = parser._lark.__wrapped__()
+    grammar = parser.GRAMMAR.lark()
     machine: Any = grammar.parser.parser
     found: set[Use] = set()
 

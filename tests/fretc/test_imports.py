@@ -22,10 +22,29 @@ ALWAYS = {
     "mujoco",
     "numpy.ma",
 }
-ALWAYS |= {"foxglove", "pyarrow", "rosbags", "spot", "websockets", "xml", "z3", "zenoh", "zipfile"}
-TEXTS = ALWAYS | {"mcap", "multiprocessing", "numpy", "socket", "subprocess", "zstandard"}
-HELP = TEXTS | {"jinja2", "lark", "tomllib"}
-REPORT = ALWAYS | {"mcap", "multiprocessing", "numpy", "socket"}
+ALWAYS |= {
+    "foxglove",
+    "lark",
+    "pyarrow",
+    "rosbags",
+    "spot",
+    "websockets",
+    "xml",
+    "z3",
+    "zenoh",
+    "zipfile",
+}
+TEXTS = ALWAYS | {
+    "fretish.syntax_errors",
+    "mcap",
+    "multiprocessing",
+    "numpy",
+    "socket",
+    "subprocess",
+    "zstandard",
+}
+HELP = TEXTS | {"jinja2", "tomllib"}
+REPORT = ALWAYS | {"compiler.targets.ajpf.bundle", "mcap", "multiprocessing", "numpy", "socket"}
 COMMANDS: dict[tuple[str, ...], set[str]] = {
     ("--version",): HELP | {"compiler.logic.formula", "difflib", "msgspec"},
     ("--help",): HELP,

@@ -7,7 +7,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fretish import syntax as s
-from fretish.clock import Clock, Rounding, assumed_ticks, in_ticks, in_words, period_of
+from fretish.clock import (
+    Clock,
+    Rounding,
+    assumed_ticks,
+    counts_in_ticks,
+    in_ticks,
+    in_words,
+    period_of,
+)
 from fretish.diagnostics.diagnostic import Diagnostic, Severity
 from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source
@@ -69,6 +77,49 @@ def test_a_tick_is_exact_where_a_floating_point_number_is_not() -> None:
     assert ticks("within 1000000000 hours", Clock(1)) == 3_600 * 10**18
 
 
+@pytest.mark.parametrize("clock", [EXACT, CONSERVATIVE])
+def test_a_duration_in_a_predicate_counts_ticks(clock: Clock) -> None:
+    for timed, counted in {
+        "persisted(500 ms, p)": "persisted(5, p)",
+        "occurred(0.1 s, 1 min, p) & x > 3 s": "occurred(1, 600, p) & x > 3 s",
+        "persists(2, occurs(200 ms, p))": "persists(2, occurs(2, p))",
+        "persisted(0 h, p)": "persisted(0, p)",
+    }.items():
+        for sentence in (
+            "whenever {} the sw shall immediately satisfy q",
+            "while {} the sw shall always satisfy q",
+            "the sw shall until {} satisfy q",
+            "the sw shall always satisfy q | !({})",
+        ):
+            result = counts_in_ticks(read(sentence.format(timed)), clock)
+            assert result == read(sentence.format(counted))
+
+
+@pytest.mark.parametrize(
+    ("call", "clock", "message"),
+    [
+        ("persisted(250 ms, p)", EXACT, "250 ms is 2.5 ticks of 100 ms"),
+        ("occurred(1, 250 ms, p)", CONSERVATIVE, "250 ms is 2.5 ticks of 100 ms"),
+        ("persists(2 m, p)", EXACT, "a duration needs a unit, and `m` is not one"),
+        ("occurs(2 s, p)", None, "`2 s` is no number of ticks: there is no tick"),
+        (
+            "occurs(2 s, p)",
+            BY_MESSAGE,
+            "the clock ticks with each message of /scan: it cannot count seconds",
+        ),
+    ],
+)
+def test_what_is_no_number_of_ticks_in_a_predicate_is_an_error(
+    call: str, clock: Clock | None, message: str
+) -> None:
+    sentence = read(f"the sw shall always satisfy q & !{call}")
+    result = counts_in_ticks(sentence, clock)
+    assert isinstance(result, Diagnostic)
+    assert result.message == message
+    assert result.span is not None
+    assert result.span.text in call
+
+
 def test_a_duration_between_two_ticks_is_an_error() -> None:
     wrong = ticks("within 250 milliseconds", EXACT)
     assert isinstance(wrong, Diagnostic)
@@ -77,7 +128,7 @@ def test_a_duration_between_two_ticks_is_an_error() -> None:
         "  --> r.fret:1:21\n"
         "   | the sw shall within 250 milliseconds satisfy q\n"
         "   |                     ^^^^^^^^^^^^^^^^\n"
-        "help: use a whole number of ticks, a finer `tick`, or "
+        "help: use a whole number of ticks (200 ms or 300 ms), a finer `tick`, or "
         '`rounding = "conservative"` under `[clock]`'
     )
 
@@ -134,7 +185,7 @@ def test_what_has_no_stricter_side_is_refused() -> None:
         "  --> r.fret:1:20\n"
         "   | the sw shall after 250 milliseconds satisfy q\n"
         "   |                    ^^^^^^^^^^^^^^^^\n"
-        "help: use a whole number of ticks, or a finer `tick`"
+        "help: use a whole number of ticks (200 ms or 300 ms), or a finer `tick`"
     )
     wrong = ticks("with probability = 0.5 within 250 milliseconds", CONSERVATIVE)
     assert isinstance(wrong, Diagnostic)

@@ -118,8 +118,8 @@ def test_an_unknown_field_without_a_near_one_is_told_what_there_is() -> None:
         "  --> r1.fret:3:3\n"
         "   |   zzz = 1\n"
         "   |   ^^^\n"
-        "help: the fields are id, title, text, parents, rationale, status, verify, params, accept, "
-        "fret"
+        "help: the fields are id, kind, title, text, parents, rationale, status, verify, params, "
+        "accept, fret"
     )
 
 

@@ -183,10 +183,10 @@ JAVA = _words(
     enum extends final finally float for goto if implements import instanceof int interface long
     native new package private protected public return short static strictfp super switch
     synchronized this throw throws transient try void volatile while true false null _
+    Truth
     """
 )
-"""The Java Language Specification, 3.9; our text has the names of percepts in strings, and that of
-the package has an ending."""
+"""The Java Language Specification, 3.9; and the type of inputs, which a field of its name hides."""
 
 PYTHON = _words(
     """

@@ -7,8 +7,7 @@ from typing import assert_never
 
 from compiler.program.program import Counter, StoredFlag
 from compiler.program.statements import Statements
-from compiler.program.stored_program import Cell, Deadline, Ring
-from compiler.program.values import Constant, Literal, Value, Variable
+from compiler.program.stored_program import Cell, Ring
 from fretish.classes.frozen import dataclass
 
 
@@ -41,15 +40,6 @@ class CPrinter(Statements):
         unused = -flags % 4 if flags < len(self.program.cells) else 0
         return sum(map(_bytes, self.program.cells)) + unused or 1
 
-    def negated(self, value: Value) -> str:
-        """The negation, with parentheses around any operator."""
-        atomic = isinstance(value, Constant | Literal | Variable)
-        return f"!{self.value(value)}" if atomic else f"!({self.value(value)})"
-
-    def capped(self, counter: str, most: int) -> str:
-        """The counter one tick later, limited to `most`."""
-        return f"({counter} < {most}) ? ({counter} + 1) : {most}"
-
     def delay(self, name: str, ring: Ring, value: str) -> Iterator[str]:
         """Statements that read and overwrite one bit of a ring, and advance its position."""
         at, word, bit = f"approximation->{ring.name}_at", f"{name}_word", f"{name}_bit"
@@ -58,17 +48,6 @@ class CPrinter(Statements):
         yield f"const bool {name} = (*{word} & {bit}) != 0u;"
         yield f"*{word} = ({value}) ? (*{word} | {bit}) : (*{word} & ~{bit});"
         yield f"{at} = ({at} == {ring.length - 1}u) ? 0u : ({at} + 1u);"
-
-    def left(self, deadline: Deadline | None, is_open: Value) -> str:
-        """The ticks left to a deadline; -1: no deadline is ahead.
-
-        A counter that requirements share may pass the deadlines of some of them.
-        """
-        if deadline is None:
-            return "-1"
-        counter, ticks = f"approximation->{deadline.counter}", deadline.deadline_ticks
-        ahead = f"({counter} >= 0) & ({counter} <= {ticks})"
-        return f"({self.grouped(is_open)} & {ahead}) ? ({ticks} - {counter}) : -1"
 
 
 def _members(cell: Cell) -> Iterable[StructMember]:

@@ -46,7 +46,11 @@ _TEMPLATES = {
     "test/test_linters.py": "test_linters.py.j2",
     "test/flake8.ini": "flake8.ini.j2",
 }
-"""The files that only ROS 2 packages have."""
+"""The files that only ROS 2 packages in Python have."""
+_CONTAINER = {
+    "Dockerfile": "Dockerfile.j2",
+    ".github/workflows/ros2.yml": "workflow.yml.j2",
+}
 
 
 def emit(
@@ -70,12 +74,21 @@ def _files(package: Package) -> dict[str, str]:
     }
     files |= {f"{name}/{file}": text for file, text in shared.modules(package).items()}
     files |= shared.documents(package, 2)
+    files |= container(package)
     files |= {f"resource/{name}": "", f"{name}/__init__.py": ""}
     files["test/test_monitor.py"] = shared.tests(package)
     if package.interception is not None:
         node = replace(package.interception, ros=2)
         files[f"{name}/interceptor.py"] = interceptor.text(node, package.bindings)
     return files
+
+
+def container(package: Package) -> dict[str, str]:
+    """What builds the package and runs its tests on ROS 2: for Docker, and for GitHub."""
+    return {
+        path: render(f"ros2/{template}", package=package, version=__version__)
+        for path, template in _CONTAINER.items()
+    }
 
 
 def _values(package: Package) -> dict[str, Any]:

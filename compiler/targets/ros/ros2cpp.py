@@ -27,7 +27,7 @@ from compiler.targets.python import perception
 from compiler.targets.python.monitor import description_of
 from compiler.targets.ros import package as shared
 from compiler.targets.ros.package import Package
-from compiler.targets.ros.ros2 import qos
+from compiler.targets.ros.ros2 import container, qos
 from compiler.targets.target import DEFAULT, LOOP, Target, TargetOptions
 from compiler.targets.witness_traces import RepeatedTick, witness_traces
 from fretish.bindings.declarations import Reading, Reduce
@@ -68,6 +68,7 @@ def emit(
     }
     documents = shared.documents(package, 2)
     files |= {name: documents[name] for name in ("LICENSE", "CHANGELOG.rst")}
+    files |= container(package)
     files[f"config/{package.name}.yaml"] = render("ros2/config.yaml.j2", **values)
     files[f"launch/{package.name}.launch.py"] = render("ros2/launch.py.j2", **values)
     for artifact in monitor.emit(requirements, TargetOptions(one_file=True)):

@@ -8,7 +8,7 @@ the construction does not end.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.diagrams.decision_diagrams import Function
@@ -58,14 +58,23 @@ def arena(
     fresh: Numbers,
     *,
     as_fret: bool = False,
+    beyond: Mapping[str, str] | None = None,
 ) -> Arena:
     """The arena of some requirements.
+
+    Args:
+        requirements: the requirements that are counted.
+        assumptions: the assumptions about the environment.
+        alphabet: the alphabet of both.
+        fresh: variables for bits.
+        as_fret: whether FRET's question is asked.
+        beyond: id of a further requirement, which is not counted → the reason.
 
     Raises:
         UnsupportedError: an assumption has no counter.
     """
     counters: dict[str, RequirementCounter] = {}
-    beyond: dict[str, str] = {}
+    left_out = dict(beyond or {})
     shared: dict[Function, Bit] = {}
     known = {id(requirement) for requirement in assumptions}
     for requirement in near_each_other([*requirements, *assumptions]):
@@ -80,14 +89,14 @@ def arena(
         except UnsupportedError as error:
             if id(requirement) in known:
                 raise UnsupportedError(f"of the assumption {requirement.id}: {error}") from None
-            beyond[requirement.id] = str(error)
+            left_out[requirement.id] = str(error)
         else:
             counters[requirement.id] = made
     of_rules = tuple(
         counters[requirement.id] for requirement in requirements if requirement.id in counters
     )
     of_assumptions = tuple(counters[assumption.id] for assumption in assumptions)
-    return Arena(Fixed(alphabet), of_rules, of_assumptions, beyond)
+    return Arena(Fixed(alphabet), of_rules, of_assumptions, left_out)
 
 
 def near_each_other(requirements: Sequence[FormalizedRequirement]) -> list[FormalizedRequirement]:

@@ -13,7 +13,7 @@ from contextlib import suppress
 from itertools import chain
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.letters import comparisons
+from compiler.formalization.letters import all_comparisons
 from compiler.formalization.resolution import candidates
 from compiler.logic.diagrams import decision_diagrams as bdd
 from compiler.logic.diagrams.decision_diagrams import Function
@@ -58,7 +58,9 @@ class Propositions:
         self.uncertainties: dict[Role, str] = {}
         self._uncertain_atoms: dict[Role, set[str]] = {Role.INPUT: set(), Role.OUTPUT: set()}
         self._compared = dict(
-            chain.from_iterable(comparisons(requirement).items() for requirement in requirements)
+            chain.from_iterable(
+                all_comparisons(requirement).items() for requirement in requirements
+            )
         )
         self._excluded = _exclusions(self._compared, requirements)
         for role, reason in self._uncertainties(requirements):

@@ -16,15 +16,18 @@ from fretish.diagnostics.messages import diagnostic
 from fretish.reading.toml_text import as_key
 
 Roles = Mapping[str, Role]
-"""Role of every variable of the requirements."""
+"""Role of each variable of the requirements that has a single one."""
 CHOSEN = (Role.INPUT, Role.OUTPUT)
 
 
-def roles(requirements: Sequence[FormalizedRequirement]) -> Roles | tuple[Diagnostic, ...]:
-    """The role of each variable, or the errors of variables without a role or with two.
+def roles(
+    requirements: Sequence[FormalizedRequirement],
+) -> tuple[Roles, tuple[Diagnostic, ...]]:
+    """The role of each variable that has a single one, and the errors of the others.
 
     F354 is reported where a variable without a role is read first. F907 is about an input of one
-    component that is an output of another.
+    component that is an output of another. Requirements that read such a variable are not
+    examined (`missing_role`).
     """
     found: dict[str, tuple[Role, str]] = {}
     wrong: dict[str, Diagnostic] = {}
@@ -38,7 +41,13 @@ def roles(requirements: Sequence[FormalizedRequirement]) -> Roles | tuple[Diagno
                 wrong.setdefault(name, _two_roles(requirement, name, f"{first} of `{whose}`", own))
             else:
                 found[name] = own, whose
-    return tuple(wrong.values()) or {name: own for name, (own, _) in found.items()}
+    known = {name: own for name, (own, _) in found.items() if name not in wrong}
+    return known, tuple(wrong.values())
+
+
+def missing_role(requirement: FormalizedRequirement, roles: Roles) -> str | None:
+    """The first variable of the requirement without a single role; None: each has one."""
+    return next((name for name in requirement.variables if name not in roles), None)
 
 
 def _two_roles(

@@ -51,7 +51,7 @@ def patterns(formulas: Sequence[Term], domain: Term, limit: Limit) -> tuple[Patt
     rest += [numbers[0] for numbers in alone.values() if len(numbers) == 1]
     solver = z3.Solver()
     solver.add(domain)
-    choices = [[*_followed(solver, [formulas[n] for n in numbers], limit)] for numbers in blocks]
+    choices = [[*_seen([formulas[n] for n in numbers], domain, limit)] for numbers in blocks]
     order = [n for numbers in blocks for n in numbers] + rest
     signs: list[Pattern] = []
     for known in _joined(solver, formulas, [*zip(blocks, choices, strict=True)], limit):
@@ -164,7 +164,7 @@ def _part(pattern: Pattern, numbers: Sequence[int]) -> Pattern:
 
 
 def _seen(formulas: Sequence[Term], domain: Term, limit: Limit) -> Iterator[Pattern]:
-    """Same as `patterns`, for many formulas with few patterns."""
+    """Same as `patterns`, for many formulas with few patterns: a query for each pattern."""
     solver = z3.Solver()
     solver.add(domain)
     names = [z3.Bool(f"mark!{number}") for number in range(len(formulas))]

@@ -84,12 +84,12 @@ def choice(names: Sequence[str], atoms: Atoms, owners: Mapping[str, Role]) -> Gr
     """
     names = sorted(names, key=atoms.is_part, reverse=True)  # what users wrote names the bits
     formulas: list[Term] = []
+    numbers: dict[int, int] = {}  # equal terms have equal ids
     of: dict[str, tuple[int, bool]] = {}
     for name in names:
         formula = atoms.found[name].formula
-        number = next((n for n, f in enumerate(formulas) if _bare(f).eq(_bare(formula))), None)
-        if number is None:
-            number = len(formulas)
+        number = numbers.setdefault(_bare(formula).get_id(), len(formulas))
+        if number == len(formulas):
             formulas.append(formula)
         of[name] = number, formulas[number].eq(formula)
     players = (Role.INPUT, Role.OUTPUT)
@@ -127,5 +127,5 @@ def _carried(
 
 
 def _bare(formula: Term) -> Term:
-    """Formula without its negation, and whether it was negated."""
+    """Formula without its negation."""
     return formula.arg(0) if z3.is_not(formula) else formula

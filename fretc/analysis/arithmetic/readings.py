@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.letters import comparisons
+from compiler.formalization.letters import all_comparisons
 from compiler.formalization.resolution import candidates
 from fretish import expressions as e
 from fretish.bindings.declarations import Aggregate, Signal
@@ -36,7 +36,7 @@ class AtomReading:
 def readings(requirements: Sequence[FormalizedRequirement]) -> Iterator[tuple[str, AtomReading]]:
     """The reading of each atom that compares numbers or enumeration values, by its name."""
     for requirement in requirements:
-        compared, declared = comparisons(requirement), requirement.declarations
+        compared, declared = all_comparisons(requirement), requirement.declarations
         for name, comparison in compared.items():
             yield name, AtomReading(comparison, _names(comparison))
         for name, part in candidates(requirement.sentence):

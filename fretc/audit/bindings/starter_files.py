@@ -13,7 +13,8 @@ from pathlib import Path
 import numpy as np
 
 from compiler.files.templating import render
-from fretc.audit.bindings.draft import draft, drafted_signals, plain_signals
+from fretc.audit.bindings.draft import draft
+from fretc.audit.bindings.draft_signals import drafted_signals, plain_signals
 from fretc.logs.reader import Overview, look, read
 from fretc.logs.signals.samples import Recording
 from fretc.logs.storage.log_names import name_of

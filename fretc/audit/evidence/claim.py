@@ -26,3 +26,5 @@ class AuditedRequirement:
     """The situations to look for in runs, from the sentence and the bindings."""
     chance: RequiredProbability | None = None
     """The probability; with one, only all runs together are judged."""
+    is_assumption: bool = False
+    """Whether it demands something of the environment."""

@@ -85,6 +85,8 @@ def _series(series: WindowSamples, factor: Fraction) -> WindowSamples:
 
 def _threshold(threshold: ThresholdRecord, declared: Mapping[str, Signal]) -> ThresholdRecord:
     unit, factor = shared_unit(threshold.signal, threshold.unit, declared)
+    if unit == threshold.unit and factor == 1:
+        return threshold
     bound = scaled(threshold.bound, factor)
     if isinf(bound):
         return threshold

@@ -27,6 +27,7 @@ from fretc.audit.evidence.schema import (
     Situations,
     ThresholdRecord,
 )
+from fretc.audit.evidence.verdicts import ASSUMPTION_BROKEN
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source
@@ -34,6 +35,7 @@ from monitors import kernel
 
 VERDICTS = (
     kernel.VIOLATED,
+    ASSUMPTION_BROKEN,
     kernel.NO_DATA,
     kernel.INCONCLUSIVE,
     kernel.VACUOUS,

@@ -9,6 +9,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import field, fields
+from functools import lru_cache
 from operator import attrgetter
 from statistics import median
 from typing import Any
@@ -95,7 +96,8 @@ class ResultSummary:
     @property
     def rests_on(self) -> Recorded:
         """The fingerprints of the inputs of the verdict other than the log."""
-        return tuple(getattr(self.fingerprints, kind) for kind in KINDS)
+        kinds: Recorded = _rests_on(self.fingerprints)
+        return kinds
 
     @property
     def content(self) -> str:
@@ -174,6 +176,13 @@ class EvidenceSource(ABC):
     def runs(self) -> Iterator[RunFacts]:
         """The facts of each run, in the order of their first results."""
 
+    def after_summaries(self) -> EvidenceSource:
+        """The same evidence, once all its summaries have been read.
+
+        A store has compared its summaries then, and takes the facts of its runs from them.
+        """
+        return self
+
     @abstractmethod
     def details(self, indices: Collection[int]) -> Iterator[tuple[int, Result]]:
         """The whole results at the given indices, in order."""
@@ -218,7 +227,7 @@ class ResultSummaries:
             shared = _sharing(each, pools)
             groups.setdefault(each.requirement, []).append((index, shared))
             firsts.setdefault((shared.run, shared.log), index)
-        return cls(source, groups, firsts)
+        return cls(source.after_summaries(), groups, firsts)
 
 
 _Pools = dict[type, dict[Any, Any]]
@@ -250,6 +259,7 @@ _COMMON = tuple(
 )
 """Fields that often have equal values, with their types; small counts are always shared."""
 _prints, _values = attrgetter(*_PRINTS), attrgetter(*_FIELDS)
+_rests_on = attrgetter(*KINDS)
 
 
 class PartialRecord(Record, frozen=True, forbid_unknown_fields=False):
@@ -272,17 +282,22 @@ class _Interval(PartialRecord, frozen=True):
     last_tick: Count
 
 
-_NO_HEALTH = Health(False, None, None, (), (), {})
+@dataclass(frozen=True, slots=True)
+class SharedFacts:
+    """What all results of a run have in common, as a `Result` has it."""
+
+    run: str
+    health: Health
+    labels: Labels | UnsetType
 
 
 class CountedResult(PartialRecord, frozen=True, kw_only=True):
-    """What is counted of a result; its events are not decoded.
+    """What is counted of a result of a store; its events are not decoded.
 
-    The facts of its run are read once for all its results, and put in afterwards.
+    The facts of its run are not here: a store has them once for all results, as `SharedFacts`.
     """
 
     run: str = ""
-    health: Health = _NO_HEALTH
     labels: Labels | UnsetType = UNSET
     requirement: Name
     verdict: Verdict
@@ -305,9 +320,11 @@ class CountedResult(PartialRecord, frozen=True, kw_only=True):
 
     def __post_init__(self) -> None:
         """Raise ValueError if a time has more than 64 bits."""
-        times = (self.start_ns, self.end_ns, *(each.start_ns for each in self.violations))
-        if not all(time is None or LEAST <= time <= GREATEST for time in times):
-            raise ValueError("Expected a time of 64 bits")
+        times = [self.start_ns, self.end_ns]
+        times += [each.start_ns for each in self.violations]
+        for time in times:
+            if time is not None and not LEAST <= time <= GREATEST:
+                raise ValueError("Expected a time of 64 bits")
 
     @property
     def trials(self) -> Trials | None:
@@ -315,12 +332,22 @@ class CountedResult(PartialRecord, frozen=True, kw_only=True):
         return trials_of(self.outcomes)
 
 
-def summary_of(result: Result | CountedResult) -> ResultSummary:
+def summary_of(result: Result) -> ResultSummary:
     """The summary of a result."""
+    return summary_of_part(result, result)
+
+
+def summary_of_part(result: Result | CountedResult, shared: Result | SharedFacts) -> ResultSummary:
+    """The summary of a result of a run.
+
+    Args:
+        result: the result.
+        shared: what it has in common with the results of its run; a whole result has it itself.
+    """
     violations, latencies = result.violations, result.latencies
     first = violations[0] if violations else None
     return ResultSummary(
-        run=result.run,
+        run=shared.run,
         requirement=result.requirement,
         verdict=result.verdict,
         finite=result.finite,
@@ -331,7 +358,7 @@ def summary_of(result: Result | CountedResult) -> ResultSummary:
         end_ns=result.end_ns,
         triggers=len(result.triggers),
         answers=len(latencies),
-        at_once=sum(late <= 0 for late in latencies),
+        at_once=latencies.count(0),
         open=len(result.open),
         violations=len(violations),
         violated_ticks=sum(v.last_tick - v.first_tick + 1 for v in violations),
@@ -341,7 +368,7 @@ def summary_of(result: Result | CountedResult) -> ResultSummary:
         unknown_ticks=sum(last - first + 1 for first, last in result.unknown),
         latency_median_s=median(latencies) if latencies else None,
         latency_max_s=max(latencies, default=None),
-        intact=result.health.intact,
+        intact=shared.health.intact,
         fingerprints=result.fingerprints,
         judgement=judgement(result),
         trials=result.trials,
@@ -360,17 +387,18 @@ def judgement(result: Result | CountedResult) -> str:
         result.verdict,
         result.finite,
         len(result.triggers),
-        [[violation.first_tick, violation.last_tick] for violation in result.violations],
-        [moment.tick for moment in result.open],
+        tuple((violation.first_tick, violation.last_tick) for violation in result.violations),
+        tuple(moment.tick for moment in result.open),
     )
 
 
+@lru_cache(1000)  # most results of a requirement are alike
 def judgement_of(
     verdict: str,
     finite: bool | None,
     triggers: int,
-    violations: Sequence[Sequence[int]],
-    open_at: Sequence[int | None],
+    violations: tuple[tuple[int, int], ...],
+    open_at: tuple[int | None, ...],
 ) -> str:
     """SHA-256 of the verdict and its ticks, from the parts of a result.
 
@@ -392,25 +420,37 @@ def judgement_of(
     )
 
 
-def run_facts(results: Sequence[Result | CountedResult]) -> RunFacts:
+def run_facts(results: Sequence[Result]) -> RunFacts:
     """The facts of a run.
 
     Args:
         results: all results of one run, at least one.
     """
+    return facts_of_parts(results, results[0])
+
+
+def facts_of_parts(
+    results: Sequence[Result | CountedResult], shared: Result | SharedFacts
+) -> RunFacts:
+    """The facts of a run.
+
+    Args:
+        results: all results of one run, at least one.
+        shared: what they have in common.
+    """
     first = results[0]
     assumptions = dict.fromkeys(text for result in results for text in result.assumptions)
     return RunFacts(
-        run=first.run,
+        run=shared.run,
         clock=first.clock,
         ticks=first.ticks,
         start_ns=first.start_ns,
         end_ns=first.end_ns,
         log=first.fingerprints.log or "",
         log_summary=first.fingerprints.log_summary or "",
-        health=first.health,
+        health=shared.health,
         assumptions=tuple(assumptions),
-        labels=first.labels or {},
+        labels=shared.labels or {},
     )
 
 

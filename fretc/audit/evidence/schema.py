@@ -48,7 +48,9 @@ from fretc.audit.measurements.unknown_inputs import MOST as MOST_UNKNOWN
 from fretc.audit.measurements.unknown_inputs import UnknownInput
 
 SCHEMA: Final = "fretc-evidence-1"
-Verdict = Literal["satisfied", "violated", "inconclusive", "vacuous", "no data"]
+Verdict = Literal[
+    "satisfied", "violated", "assumption broken", "inconclusive", "vacuous", "no data"
+]
 LabelName = Annotated[str, Meta(min_length=1, max_length=50)]
 LabelText = Annotated[str, Meta(min_length=1, max_length=200)]
 """Texts of an untrusted log: they are escaped when they are shown."""

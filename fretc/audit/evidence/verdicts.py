@@ -22,6 +22,8 @@ UNFORMALIZED = "unformalized"
 NOT_EXERCISED = "not exercised"
 RETIRED = "retired"
 WAIVED = "waived"
+ASSUMPTION_BROKEN = "assumption broken"
+"""The verdict of an assumption where a requirement would be violated."""
 SUSPECT, CURRENT = "suspect", "current"
 """The currency of a verdict: whether its inputs are unchanged."""
 
@@ -51,6 +53,7 @@ VERDICTS: Mapping[str, DisplayedVerdict] = {
     for each in (
         DisplayedVerdict(kernel.VIOLATED, signs.BAD, _ERROR, "failure"),
         DisplayedVerdict(REFUTED, signs.BAD, _ERROR, "failure"),
+        DisplayedVerdict(ASSUMPTION_BROKEN, signs.FLAWED, _WARNING, "error"),
         DisplayedVerdict(UNFORMALIZED, signs.FLAWED, _ERROR, "error"),
         DisplayedVerdict(kernel.NO_DATA, signs.UNKNOWN, _WARNING, "error"),
         DisplayedVerdict(kernel.INCONCLUSIVE, signs.OPEN, _WARNING, "skipped"),
@@ -64,10 +67,16 @@ VERDICTS: Mapping[str, DisplayedVerdict] = {
 }
 """Verdicts by word. The verdict of several runs is their worst."""
 BROKEN = (kernel.VIOLATED, REFUTED)
-"""The verdicts that report a violation."""
+"""The verdicts that report a violation by the system."""
 SHOWN = (kernel.SATISFIED, SUPPORTED)
 """The verdicts that show a requirement, unless they are suspect."""
 _RANK = {word: rank for rank, word in enumerate(VERDICTS)}
+
+
+def of_kind(word: str, *, is_assumption: bool) -> str:
+    """The verdict of a run, which says apart whether a requirement or an assumption is broken."""
+    broken = word in (kernel.VIOLATED, ASSUMPTION_BROKEN)
+    return word if not broken else ASSUMPTION_BROKEN if is_assumption else kernel.VIOLATED
 
 
 def shows(word: str, *, suspect: bool) -> bool:

@@ -30,6 +30,7 @@ from fretc.audit.log_paths import ANNOTATIONS
 from fretc.audit.measurements.intervals import end_ns
 from fretc.audit.measurements.states import OPEN, UNKNOWN
 from fretc.audit.outputs.violated_values import values
+from fretc.logs.storage.log_names import LOGS, TABLES
 from fretish.bindings.amounts import duration, seconds
 from fretish.classes.frozen import dataclass
 from monitors import kernel
@@ -39,7 +40,6 @@ _INFO, _WARNING, _ERROR = 2, 3, 4
 _LEVELS: Mapping[str, int] = {kernel.SATISFIED: _INFO, kernel.VIOLATED: _ERROR}
 """Levels of verdicts; any other verdict is a warning."""
 _SECOND = 10**9
-_LOGS = (".mcap", ".bag", ".db3")
 
 _TEXT = {"type": "string"}
 _WHOLE = {"type": "integer", "minimum": 0}
@@ -214,7 +214,7 @@ def _shared(one: Sequence[str], other: Sequence[str]) -> int:
 
 def _stem(run: str) -> str:
     name = Path(run).name
-    return next((name[: -len(end)] for end in _LOGS if name.endswith(end)), name)
+    return next((name[: -len(end)] for end in (*LOGS, *TABLES) if name.endswith(end)), name)
 
 
 def _safe(text: str) -> str:

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from fretc.audit.evidence.reader import VERDICTS
+from fretc.audit.evidence.verdicts import ASSUMPTION_BROKEN
 from fretc.audit.outputs.table import READS
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -21,6 +22,7 @@ MOST = 10
 COUNTED: Mapping[str, str] = {
     "satisfied": kernel.SATISFIED,
     "violated": kernel.VIOLATED,
+    "assumption_broken": ASSUMPTION_BROKEN,
     "inconclusive": kernel.INCONCLUSIVE,
     "vacuous": kernel.VACUOUS,
     "no_data": kernel.NO_DATA,

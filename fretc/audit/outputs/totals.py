@@ -9,7 +9,7 @@ from typing import Protocol, TypeVar
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.result_summaries import ResultSummary
 from fretc.audit.evidence.schema import Result, Violation
-from fretc.audit.evidence.verdicts import BROKEN, SHOWN, VERDICTS
+from fretc.audit.evidence.verdicts import ASSUMPTION_BROKEN, BROKEN, SHOWN, VERDICTS
 from fretc.audit.measurements.confidence_intervals import REFUTED, SUPPORTED
 from fretc.audit.measurements.trials import Trials
 from fretish.classes.frozen import dataclass
@@ -204,7 +204,7 @@ def totals(marks: VerdictWords) -> tuple[ResultCount, ...]:
 
 
 def longest(result: Result) -> Violation | None:
-    """The longest violation of a violated result, the first of equal ones."""
-    if result.verdict not in BROKEN:
+    """The longest violation of a violated result or a broken assumption, the first of equals."""
+    if result.verdict not in (*BROKEN, ASSUMPTION_BROKEN):
         return None
     return max(result.violations, key=lambda one: one.last_tick - one.first_tick, default=None)

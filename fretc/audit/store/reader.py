@@ -12,6 +12,7 @@ import os
 from bisect import bisect_right
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace as replace_fields
 from functools import cached_property
 from itertools import accumulate, chain, groupby
 from pathlib import Path
@@ -36,7 +37,8 @@ from fretc.audit.evidence.result_summaries import (
     PartialRecord,
     ResultSummary,
     RunFacts,
-    run_facts,
+    SharedFacts,
+    facts_of_parts,
 )
 from fretc.audit.evidence.schema import (
     EvidenceDocument,
@@ -64,7 +66,7 @@ from fretc.audit.store.container import (
     unpacked_summary,
     whole_results,
 )
-from fretc.audit.store.run_summaries import RunSummary, run_summary, summary_from
+from fretc.audit.store.run_summaries import RunSummary, facts_from, summary_from, summary_of_parts
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 
@@ -100,7 +102,7 @@ class Store(EvidenceSource):
     rows: Sequence[Row]
     by_summaries: bool = False
     """Whether summaries, facts and tallies are those that the audit wrote, without a look at the
-    records."""
+    records: the user's key authenticates them, or they were compared with the records before."""
 
     def summaries(self) -> Iterator[tuple[int, ResultSummary]]:
         """The summary of each result with its index, in order; the results of a run adjoin."""
@@ -108,9 +110,22 @@ class Store(EvidenceSource):
 
     def runs(self) -> Iterator[RunFacts]:
         """The facts of each run, in the order of their first results."""
-        if self.by_summaries:
-            return (run.facts for run in self.run_summaries())
-        return map(run_facts, self._counted())
+        if not self.by_summaries:
+            yield from (facts_of_parts(results, shared) for shared, results in self._counted())
+            return
+        for text in self._summary_texts():
+            assert text is not None
+            with self._valid():
+                facts = facts_from(text)
+            yield facts
+
+    def after_summaries(self) -> Store:
+        """The store, once all its summaries have been compared with their records.
+
+        Each time that a summary is read, its hash is compared; so it is one that was compared.
+        """
+        has_all = all(row.summary_sha256 is not None for row in self.rows)
+        return replace_fields(self, by_summaries=True) if has_all else self
 
     def tallies(self) -> Iterator[dict[str, PropositionTally]]:
         """The tally of each proposition in each run."""
@@ -125,33 +140,37 @@ class Store(EvidenceSource):
                     found = summary_from(text, row.results)
                 yield found
         else:
-            for run, text in zip(self._counted(), self._summary_texts(), strict=True):
-                yield self._summary(run, text)
+            runs = zip(self._counted(), self._summary_texts(), strict=True)
+            for (shared, results), text in runs:
+                yield self._summary(results, shared, text)
 
-    def _summary(self, results: Sequence[Result | CountedResult], text: bytes | None) -> RunSummary:
+    def _summary(
+        self,
+        results: Sequence[Result | CountedResult],
+        shared: Result | SharedFacts,
+        text: bytes | None,
+    ) -> RunSummary:
         """The summary of all results of a run.
 
         Args:
             results: those of its record.
+            shared: what they have in common.
             text: the JSON of its summary, which is compared; None: it has none.
         """
-        found = run_summary(results)
+        found = summary_of_parts(results, shared)
         with self._valid():
             if text is not None and found.text != text:
                 raise SchemaError("a summary contradicts its record")
         return found
 
-    def _counted(self) -> Iterator[list[CountedResult]]:
+    def _counted(self) -> Iterator[tuple[SharedFacts, list[CountedResult]]]:
         for run in self._runs(CountedResult):
             with self._valid():
-                health, labels = strict(run.health, Health), run.labels
-                shared = {"run": run.run, "health": health}
-                if labels is not UNSET:
-                    shared["labels"] = strict(labels, Labels)
+                labels = UNSET if run.labels is UNSET else strict(run.labels, Labels)
+                shared = SharedFacts(run.run, strict(run.health, Health), labels)
                 if any(each.run or each.labels for each in run.results):
                     raise SchemaError("a result has a fact of its run")
-                results = [replace(each, **shared) for each in run.results]
-            yield results
+            yield shared, run.results
 
     def details(self, indices: Collection[int]) -> Iterator[tuple[int, Result]]:
         """The whole results at the given indices, in order."""
@@ -167,7 +186,7 @@ class Store(EvidenceSource):
                 own = [index - starts[row] for index in of_row[row]]
                 results = [*whole_results(run, own)]
             if len(results) == self.rows[row].results:
-                self._summary(results, text)
+                self._summary(results, results[0], text)
             yield from zip(of_row[row], results, strict=True)
 
     def results(self) -> Iterator[Result]:
@@ -230,7 +249,8 @@ class Store(EvidenceSource):
         """
         with self._valid(), container.opened(self.path) as connection:
             for row in self._chosen(chosen):
-                yield unpacked(row, record_of(connection, row.place), kind)
+                record = record_of(connection, row.place)
+                yield unpacked(row, record, kind, known=self.by_summaries)
 
     def _summary_texts(self, chosen: Sequence[int] | None = None) -> Iterator[bytes | None]:
         """The JSON of the summary of each run, or of some, in order; None: it has none."""

@@ -12,10 +12,12 @@ from compiler.files.checked_json import SchemaError
 from compiler.files.records import Record, decoded_json, json_bytes
 from fretc.audit.evidence.result_summaries import (
     CountedResult,
+    PartialRecord,
     ResultSummary,
     RunFacts,
-    run_facts,
-    summary_of,
+    SharedFacts,
+    facts_of_parts,
+    summary_of_part,
 )
 from fretc.audit.evidence.schema import Result
 from fretc.audit.measurements.tallies import PropositionTally
@@ -35,17 +37,42 @@ class RunSummary(Record, frozen=True):
         return json_bytes(self)
 
 
-def run_summary(results: Sequence[Result | CountedResult]) -> RunSummary:
+def run_summary(results: Sequence[Result]) -> RunSummary:
     """The summary of a run.
 
     Args:
         results: all results of the run, at least one.
     """
+    return summary_of_parts(results, results[0])
+
+
+def summary_of_parts(
+    results: Sequence[Result | CountedResult], shared: Result | SharedFacts
+) -> RunSummary:
+    """The summary of a run.
+
+    Args:
+        results: all results of the run, at least one.
+        shared: what they have in common; any whole result has it.
+    """
     return RunSummary(
-        run_facts(results),
-        tuple(map(summary_of, results)),
+        facts_of_parts(results, shared),
+        tuple(summary_of_part(each, shared) for each in results),
         {name: tally for each in results for name, tally in each.propositions.items()},
     )
+
+
+class _Facts(PartialRecord, frozen=True):
+    facts: RunFacts
+
+
+def facts_from(text: bytes) -> RunFacts:
+    """The facts of a run, from the JSON of its summary.
+
+    Raises:
+        SchemaError: it has none.
+    """
+    return decoded_json(text, _Facts).facts
 
 
 def summary_from(text: bytes, results: int) -> RunSummary:

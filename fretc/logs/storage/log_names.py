@@ -1,4 +1,4 @@
-"""The printable name of a log for every output, and the path for a name.
+"""The suffixes of logs, the printable name of a log for every output, and the path for a name.
 
 The name of a file may contain any byte except `/` and NUL, also bytes that are not text or that
 move the cursor. Its printable name has an escape for each such byte, so that it is one line of
@@ -12,6 +12,11 @@ import re
 import shlex
 from urllib.parse import parse_qsl, urlencode, urlsplit, urlunsplit
 
+LOGS = (".mcap", ".bag", ".db3", ".ulg")
+"""Suffixes of files that are nothing but logs."""
+TEXT_TABLES = (".csv", ".tsv", ".jsonl", ".ndjson")
+TABLES = (*TEXT_TABLES, ".parquet", ".feather", ".arrow")
+"""Suffixes of tables, which may be logs."""
 STDIN = "-"
 _STDIN_NAME = "<stdin>"
 _URL = re.compile(r"[A-Za-z][A-Za-z0-9+.:-]+://.*", re.DOTALL)

@@ -211,7 +211,7 @@ def _numbers(
     """Arguments of `uses`: current runs, allowed time, number of rows, number of suspect runs."""
     rows = details.rows[assessment.anchor]
     current = [
-        (replace(row, mark=audit.mark), thresholds[audit.place])
+        (row if row.mark == audit.mark else replace(row, mark=audit.mark), thresholds[audit.place])
         for audit, row in zip(assessment.audits, rows, strict=True)
         if not audit.is_stale
     ]

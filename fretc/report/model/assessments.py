@@ -22,6 +22,7 @@ from fretc.audit.evidence.verdicts import (
     SUSPECT,
     UNFORMALIZED,
     WAIVED,
+    of_kind,
     severity,
 )
 from fretc.audit.measurements.trials import NO_TRIALS
@@ -98,12 +99,15 @@ class SingleAudit:
     suspicions: tuple[str, ...]
     place: int = 0
     """Index of the result in the evidence."""
+    is_assumption: bool = False
+    """Whether the requirement is an assumption now, whatever it was at the audit."""
 
     @property
     def verdict(self) -> str:
         """The verdict of the result; `violated` if the result lists a violation."""
         violations = self.result.violations and self.result.trials is None
-        return kernel.VIOLATED if violations else self.result.verdict
+        word = kernel.VIOLATED if violations else self.result.verdict
+        return of_kind(word, is_assumption=self.is_assumption)
 
     @property
     def is_stale(self) -> bool:
@@ -121,7 +125,9 @@ class SingleAudit:
         Args:
             review: what has changed since the review; "" if nothing has.
         """
-        return SingleAudit(self.result, review, self.place) if review and self.mark.shows else self
+        if not review or not self.mark.shows:
+            return self
+        return SingleAudit(self.result, review, self.place, self.is_assumption)
 
 
 @dataclass(frozen=True, slots=True)
@@ -290,7 +296,7 @@ def assessments(
         verdict_inputs = inputs_of[entry]
         suspicions = AboutResults(verdict_inputs, audited_by, formalized=requirement is not None)
         audits = tuple(
-            SingleAudit(result, suspicions.of(result), place)
+            SingleAudit(result, suspicions.of(result), place, entry.is_assumption)
             for place, result in results.get(entry.id, ())
         )
         assessed.append(

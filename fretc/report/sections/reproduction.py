@@ -23,7 +23,7 @@ from fretc.analysis.evidence import AnalyzedSet
 from fretc.attestation.signatures import SIGNERS
 from fretc.audit.evidence.verdict_inputs import of_all, of_bindings
 from fretc.audit.measurements.confidence_intervals import CONFIDENCE
-from fretc.logs.storage.log_names import STDIN, name_of, path_of, shell_word
+from fretc.logs.storage.log_names import LOGS, STDIN, TABLES, name_of, path_of, shell_word
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Inputs
 from fretc.report.model.views import Command, Hash, RequirementView
@@ -245,7 +245,7 @@ def _check(runs: Sequence[AuditedFile]) -> str:
 
 def _is_file(run: str) -> bool:
     """Whether `sha256sum` can read the run: it is not a folder, a URL or standard input."""
-    return PurePath(run).suffix in (".mcap", ".bag", ".db3") and "://" not in run
+    return PurePath(run).suffix in (*LOGS, *TABLES) and "://" not in run
 
 
 def _emissions(sections: Sequence[RequirementView]) -> Iterable[Command]:

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from compiler.project.project import Project
-from fretc.analysis.assumptions import assumptions
+from fretc.analysis.assumptions import assumptions, guarantees
 from fretc.analysis.evidence import AnalysisDocument, AnalyzedSet, suspicions
 from fretc.analysis.findings import Analysis, RealizabilityVerdict
 from fretc.analysis.text_output import SIGNS, columns, lanes, remarks
@@ -43,8 +43,8 @@ def set_analysis(known: AnalyzedSet, project: Project, anchors: Mapping[str, str
         project: the present project.
         anchors: id → anchor of the requirement.
     """
-    requirements = project.in_force
-    assumed, mistakes = assumptions(requirements, project.declarations)
+    requirements = guarantees(project.in_force)
+    assumed, mistakes = assumptions(project.in_force, project.declarations)
     old = [
         *suspicions(known.document, requirements, assumed),
         *(
@@ -75,13 +75,17 @@ def set_analysis(known: AnalyzedSet, project: Project, anchors: Mapping[str, str
             SetConflict(
                 view.members(conflict.requirements),
                 conflict.because,
-                view.play(conflict.play, conflict.loop),
+                view.play(conflict.play, conflict.loop, conflict.requirements),
             )
             for conflict in analysis.conflicts
         ),
         complete=analysis.complete,
         clashes=tuple(
-            SetConflict(view.members(conflict.requirements), "", view.play(conflict.play, None))
+            SetConflict(
+                view.members(conflict.requirements),
+                "",
+                view.play(conflict.play, None, conflict.requirements),
+            )
             for conflict in analysis.inconsistent
         ),
         remarks=tuple(text.strip() for text, _ in remarks(analysis)),
@@ -137,9 +141,11 @@ class _Views:
             for id in sorted(ids, key=natural)
         )
 
-    def play(self, ticks: Sequence[Mapping[str, object]], loop: int | None) -> Play:
-        """The view of a run in columns; `loop` is a tick."""
-        roles = self._document.analysis.roles
+    def play(
+        self, ticks: Sequence[Mapping[str, object]], loop: int | None, ids: Sequence[str]
+    ) -> Play:
+        """The view of a run of some requirements in columns; `loop` is a tick."""
+        roles = self._document.analysis.roles_in(ids)
         names = lanes(ticks, roles)
         lines = columns(ticks, names)
         back = [i for i, each in enumerate(lines) if loop is not None and each.first <= loop]

@@ -9,7 +9,7 @@ address, so they access only the memory of the approximation, and a step depends
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from itertools import zip_longest
 
 from fretc.verification.compiled.flow import BlockFlow, CheckedLayout
@@ -20,6 +20,7 @@ from fretc.verification.compiled.text import (
     UnexpectedLayoutError,
     bodies,
     is_constant,
+    statements,
     strange,
 )
 
@@ -70,12 +71,12 @@ def check_layout(
     given, own = LEXIS.tokens(text), LEXIS.tokens(written)
     free = ((f"{base}_clear",), (f"{base}_advance",))
     (cleared, own_cleared), (stepped, own_stepped) = bodies(given, own, free)
-    known = frozenset([*_statements(own_cleared), *_statements(own_stepped)])
+    known = frozenset([*statements(own_cleared), *statements(own_stepped)])
     _same_cells(cleared, own_cleared)
     read = re.findall(r"now \. (\w+) = inputs -> (\w+) ==", " ".join(own))
     literals = {literal: inputs.index(name) for literal, name in read}
     step = _CStep(known, cells, literals)
-    for statement in _statements(stepped):
+    for statement in statements(stepped):
         step.read(statement)
     return CheckedLayout(step.sources, literals)
 
@@ -85,25 +86,12 @@ def without_comments(text: str) -> str:
     return re.sub(r"/\*.*?\*/", lambda comment: re.sub(r".", " ", comment[0]), text, flags=re.S)
 
 
-def _statements(body: Tokens) -> Iterator[Tokens]:
-    """Statements up to each semicolon or brace; an `else` belongs to the preceding brace."""
-    start, depth = 0, 0
-    for index, token in enumerate(body):
-        depth += {"(": 1, ")": -1}.get(token, 0)
-        after = body[index + 1] if index + 1 < len(body) else ""
-        if (token in (";", "{") and depth == 0) or (token == "}" and after != "else"):
-            yield body[start : index + 1]
-            start = index + 1
-    if start < len(body):
-        raise strange(body[start:])
-
-
 def _same_cells(cleared: Tokens, own: Tokens) -> None:
     """Raise UnexpectedLayoutError unless each cell gets a first value, in the order of fretc.
 
     A cell without a first value depends on earlier memory, which no exploration covers.
     """
-    given, written = [*_statements(cleared)], [*_statements(own)]
+    given, written = [*statements(cleared)], [*statements(own)]
     for actual, expected in zip_longest(given, written, fillvalue=()):
         both = _is_first_value(actual) and _is_first_value(expected)
         if not actual:

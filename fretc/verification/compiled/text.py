@@ -161,6 +161,23 @@ def parts(text: Tokens, end: str) -> Iterator[Tokens]:
         start = place + 1
 
 
+def statements(body: Tokens) -> Iterator[Tokens]:
+    """Statements up to each semicolon or brace; an `else` belongs to the preceding brace.
+
+    Raises:
+        UnexpectedLayoutError: the last statement has no end.
+    """
+    start, depth = 0, 0
+    for index, token in enumerate(body):
+        depth += {"(": 1, ")": -1}.get(token, 0)
+        after = body[index + 1] if index + 1 < len(body) else ""
+        if (token in (";", "{") and depth == 0) or (token == "}" and after != "else"):
+            yield body[start : index + 1]
+            start = index + 1
+    if start < len(body):
+        raise strange(body[start:])
+
+
 def is_constant(value: Sequence[str]) -> bool:
     """Whether the token is a truth value or an integer."""
     *sign, last = value or ("",)

@@ -46,22 +46,45 @@ def compiled(
     """
     with TemporaryDirectory(prefix="fretc-") as name:
         folder = Path(name)
-        for file, text in texts.items():
-            (folder / file).write_text(text, encoding="utf-8")
-        known = version(program)
-        for step in steps:
-            try:
-                end = run([program, *flags, *step], folder, seconds=_SECONDS, memory=MEMORY)
-            except OSError as error:
-                raise ToolError(f"the compiler cannot be run: {error}") from None
-            if end.status != 0:
-                lines = (line for line in end.text.splitlines() if "error" in line)
-                raise ToolError(f"{known} does not compile it: {next(lines, 'it gives no reason')}")
+        known = compile_in(folder, program, flags, texts, steps)
         try:
             data = (folder / result).read_bytes()
         except OSError:
             raise ToolError(f"{known} compiles it, but writes no `{result}`") from None
         return Binary(data, f"{known} {' '.join(flags)}")
+
+
+def compile_in(
+    folder: Path,
+    program: str,
+    flags: Sequence[str],
+    texts: Mapping[str, str],
+    steps: Sequence[Sequence[str]],
+) -> str:
+    """Compile texts in a folder; return the compiler with its version.
+
+    Args:
+        folder: folder for the texts and what is made of them.
+        program: path of the compiler.
+        flags: flags of all steps.
+        texts: texts by file name.
+        steps: further arguments of each call of the compiler.
+
+    Raises:
+        ToolError: the compiler rejects the text, or cannot be run.
+    """
+    for file, text in texts.items():
+        (folder / file).write_text(text, encoding="utf-8")
+    known = version(program)
+    for step in steps:
+        try:
+            end = run([program, *flags, *step], folder, seconds=_SECONDS, memory=MEMORY)
+        except OSError as error:
+            raise ToolError(f"the compiler cannot be run: {error}") from None
+        if end.status != 0:
+            lines = (line for line in end.text.splitlines() if "error" in line)
+            raise ToolError(f"{known} does not compile it: {next(lines, 'it gives no reason')}")
+    return known
 
 
 def version(program: str) -> str:

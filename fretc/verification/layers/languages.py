@@ -56,6 +56,15 @@ TABLE = (
         "the deployed binary is the one that was proved",
     ),
     LanguageRow(
+        "Java",
+        (".java",),
+        "java",
+        "java",
+        "compiled and run for its proof, but `javac` and `java` are not both installed",
+        "install a JDK of Java 11 or later, as with `apt install default-jdk-headless`",
+        "other compilers and virtual machines run the file as these did",
+    ),
+    LanguageRow(
         "JavaScript",
         (".mjs", ".js"),
         "js",

@@ -2,7 +2,6 @@
 
 import errno
 import os
-import secrets
 import stat
 from pathlib import Path
 
@@ -93,8 +92,8 @@ def test_a_file_is_private_until_it_is_whole(here: Path, monkeypatch: pytest.Mon
 def test_a_link_in_the_place_of_a_temporary_file_is_not_followed(
     here: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(secrets, "token_hex", lambda length: "known")
-    link(".a.txt.known.tmp", "../precious")
+    monkeypatch.setattr(os, "urandom", bytes)
+    link(".a.txt.00000000.tmp", "../precious")
     wrong = write({Path("a.txt"): "text"})
     assert wrong is not None
     assert (here.parent / "precious").read_text() == "precious"

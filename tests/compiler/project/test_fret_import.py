@@ -273,6 +273,27 @@ def test_a_text_that_is_no_fretish_is_taken_over_and_told(fretc: Fretc) -> None:
     assert written()["requirements.fret"].endswith("+++\nthe sw must satisfy p\n")
 
 
+def test_a_key_word_as_a_name_gets_quotes(fretc: Fretc) -> None:
+    """The name stays the same, so that variables and formulas do."""
+    text = "the sw shall always satisfy next => !last & next"
+    run = fretc("import", export([record("R1", text)]))
+    assert run.status == 0
+    assert run.err.count("F109 warning: `next` is a key word of FRETish: it is imported as") == 2
+    written_ = written()["requirements.fret"]
+    assert written_.endswith('+++\nthe sw shall always satisfy "next" => !"last" & "next"\n')
+    assert f'fulltext = "{text}"' in written_
+    assert fretc("requirements", "--emit", "ltl", "-o", "-").status == 0
+
+
+def test_an_id_that_contains_assumption_makes_an_assumption(fretc: Fretc) -> None:
+    """FRET's convention: it has no field for it, and ignores case."""
+    names = ("WIND_assumption", "Assumption-2", "ASSUME-3")
+    run = fretc("import", export([record(id, "the sw shall always satisfy p") for id in names]))
+    assert run.err.endswith("imported 3 requirements (2 of them assumptions), 0 variables\n")
+    made, _ = documents.requirements(Source("r.fret", written()["requirements.fret"]))
+    assert [each.id for each in made if each.is_assumption] == ["WIND_assumption", "Assumption-2"]
+
+
 # Ids and projects -----------------------------------------------------------------------------
 
 

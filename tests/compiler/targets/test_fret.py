@@ -149,6 +149,24 @@ def test_the_ranges_are_about_the_text_as_it_is_written_there(fretc: Fretc, sent
     }
 
 
+@pytest.mark.parametrize(
+    ("ours", "frets"),
+    [
+        ("within 500 ms", "within 500 milliseconds"),
+        ("for  0.5 s", "for  500 milliseconds"),
+        ("after 1.5 minutes", "after 90 seconds"),
+        ("within 2min", "within 2 minutes"),
+        ("within 2.0 ticks", "within 2 ticks"),
+        ("within 2   SECS", "within 2   SECS"),
+    ],
+)
+def test_a_duration_has_frets_words(fretc: Fretc, ours: str, frets: str) -> None:
+    record = only(fretc, f'when  h the  sw shall {ours} satisfy "T" & s')
+    assert record["fulltext"] == f'when  h the  sw shall {frets} satisfy "T" & s'
+    start, end = record["semantics"]["timingTextRange"]
+    assert record["fulltext"][start : end + 1] == frets
+
+
 def test_fret_has_no_bounded_since(fretc: Fretc) -> None:
     record = only(fretc, "in m mode whenever occurred(1,3,p) the sw shall immediately satisfy q")
     for name in ("pt", "ptExpanded"):

@@ -56,6 +56,6 @@ def test_a_probable_requirement(golden: Callable[[str, str], None]) -> None:
 def test_every_golden_file_belongs_to_a_target_or_to_a_draft() -> None:
     folder = R1.parent / "tests/golden"
     assert {path.name for path in folder.iterdir()} == {*TARGETS, "bindings"}
-    several = {"prism": 2, "dafny": 2, "c": 4, "rust": 2, "js": 2}
+    several = {"prism": 2, "dafny": 2, "c": 4, "rust": 2, "js": 2, "java": 2}
     for path in folder.iterdir():
         assert len(list(path.iterdir())) == several.get(path.name, 1), path

@@ -31,7 +31,7 @@ from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source
 from fretish.expressions import Name
 from fretish.keywords import RESERVED
-from tests import c_monitors, node, rust_monitors
+from tests import c_monitors, java_monitors, node, rust_monitors
 from tests.command import Fretc, write
 from tests.each import each
 from tests.effort import FULL, some
@@ -59,6 +59,7 @@ def taken() -> tuple[str, ...]:
     reserved = {word for table in TABLES.values() for word in table.words}
     own = emitted("monitor", _SAMPLE) | emitted("c", _SAMPLE) | emitted("rust", _SAMPLE)
     own |= emitted("js", _SAMPLE) | emitted("smv", _SAMPLE) | emitted("dafny", _SAMPLE)
+    own |= emitted("java", _SAMPLE)
     words = {word for text in own.values() for word in re.findall(r"[A-Za-z_]\w*", _code(text))}
     some_more = {*LIKE, *keyword.kwlist, *keyword.softkwlist, *dir(builtins), *string.ascii_letters}
     return tuple(sorted({*reserved, *words, *some_more} - {"FTP", "X!", "ask"}))
@@ -166,6 +167,13 @@ def test_rustc_compiles_it(tmp_path: Path) -> None:
     assert [*map(breaks, told)] == [[len(names)] for names in chunks()]
 
 
+@pytest.mark.slow
+def test_javac_compiles_it(tmp_path: Path) -> None:
+    texts = [java_monitors.monitor(about(names)) for names in chunks()]
+    told = java_monitors.outcomes(tmp_path, texts, words())
+    assert [*map(breaks, told)] == [[len(names)] for names in chunks()]
+
+
 @node.needs_node
 @pytest.mark.slow
 def test_node_runs_it(tmp_path: Path) -> None:
@@ -255,7 +263,7 @@ def test_lustre_has_no_assignment_with_its_own_words() -> None:
     assert [name for name in LUSTRE.words if lustre(Name(name)) is not None] == []
 
 
-@pytest.mark.parametrize("kind", ["c", "rust", "monitor", "smv", "prism", "dafny", "ajpf"])
+@pytest.mark.parametrize("kind", ["c", "rust", "java", "monitor", "smv", "prism", "dafny", "ajpf"])
 @settings(max_examples=200 if FULL else 6)
 @given(
     st.lists(
@@ -270,8 +278,9 @@ def test_what_is_not_reserved_keeps_its_name(kind: str, names: list[str]) -> Non
     subject = requirement(sentence) if kind == "prism" else about(names)
     found = TARGETS[kind].names(subject)
     assert len({found[name] for name in names}) == len(names)
-    if kind in ("c", "rust", "smv", "prism"):
-        table = TABLES[{"c": "C", "rust": "Rust", "smv": "SMV", "prism": "PRISM"}[kind]]
+    tables = {"c": "C", "rust": "Rust", "java": "Java", "smv": "SMV", "prism": "PRISM"}
+    if kind in tables:
+        table = TABLES[tables[kind]]
         assert all(found[name] == name for name in names if name not in table)
 
 
@@ -348,6 +357,7 @@ def test_comments_and_json_give_the_map_back() -> None:
     assert renamed_propositions(requirement(sentence)) == {
         "monitor": {"class": "class_"},
         "c": {"class": "class_2", "int": "int_2"},
+        "java": {"class": "class_2", "int": "int_2"},
         "ajpf": {"T": "v_T"},
         "ajpf-bundle": {"T": "v_T"},
         "agent-runtime": {"T": "v_T"},

@@ -63,8 +63,8 @@ def rules_of(
 def analyzed(
     requirements: tuple[FormalizedRequirement, ...], assumed: tuple[FormalizedRequirement, ...]
 ) -> AnalysisDocument:
-    chosen = roles([*requirements, *assumed])
-    assert not isinstance(chosen, tuple)
+    chosen, mistakes = roles([*requirements, *assumed])
+    assert not mistakes
     return document(requirements, assumed, analyze(requirements, chosen, assumed), as_fret=False)
 
 

@@ -151,8 +151,8 @@ def test_hover_is_reached_within_twelve_ticks_and_not_within_six(
     assert fretc("import", write("export.json", text), "-o", "set").status == 0
     project = load_folder("set")
     assert not isinstance(project, Diagnostic)
-    named = roles(project.formalized)
-    assert not isinstance(named, tuple)
+    named, mistakes = roles(project.formalized)
+    assert not mistakes
     assert "kias_before" not in named
     found, _ = verdict(stage(project.formalized, (), named), Budget(60))
     assert found.verdict is answer

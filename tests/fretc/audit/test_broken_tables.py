@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 from compiler.emit import TARGETS
 from compiler.project.folder import load
 from compiler.project.project import Project
-from fretc.audit.bindings.draft import missing_propositions
+from fretc.audit.bindings.needs import missing_propositions
 from fretc.audit.plan import Plan, planned
 from fretc.audit.project_inputs import all_verdict_inputs
 from fretc.terminal.output import EXIT_OK, EXIT_USAGE, EXIT_VIOLATION

@@ -76,6 +76,10 @@ CAUSES: Mapping[str, Mapping[str, str]] = {
     "F525": {PLAN: AJPF},
     "F527": {PARENTS: 'parents = ["HAZ-9"]\n'},
     "F528": {PLAN: '["audit", "auditt"]'},
+    "F563": {
+        'id = "R1"\n': 'id = "R1"\nkind = "assumption"\n',
+        'role = "input"\nkind = "belief"': 'role = "output"\nkind = "belief"',
+    },
     "F606": sentence("whenever near the robot shall immediately satisfy stopped", AJPF),
     "F607": sentence("the robot shall always satisfy stopped", AJPF),
     "F615": {

@@ -291,12 +291,58 @@ def test_components_of_an_export_are_told_apart(fretc: Fretc, tmp_path: Path) ->
     assert fretc("analyze", folder, "--component", "sender").status == 0
     assert fretc("analyze", folder, "--component", "receiver").status == 1
     both = fretc("analyze", folder)
-    assert both.status == 2
-    assert both.err.startswith(
-        "F907 `link` is an output of `sender`, and an input of `receiver`: these are two "
-        "different systems\n"
-    )
-    assert both.err.endswith("help: analyze one of them: `--component receiver`\n")
+    assert both.status == 1
+    assert "  ✔ S1 (about link): the system has a strategy\n" in both.out
+    assert "  ✘ R1: the environment wins\n" in both.out
+    assert "inputs: link of receiver\noutputs: link of sender\n" in both.out
+
+
+# Assumptions by their kind ---------------------------------------------------------------------
+
+ASSUMED = "the operator shall never satisfy start & stop"
+
+
+def with_assumption(folder: Path, sentence: str = ASSUMED) -> str:
+    written(folder, FIGHT)
+    (folder / "a1.fret").write_text(f'+++\nid = "A1"\nkind = "assumption"\n+++\n{sentence}\n')
+    return str(folder)
+
+
+@pytest.mark.slow
+def test_a_requirement_of_this_kind_is_assumed_as_a_sentence_of_the_bindings(
+    fretc: Fretc, tmp_path: Path
+) -> None:
+    by_kind, by_table = (tmp_path / name for name in ("kind", "table"))
+    for each in (by_kind, by_table):
+        each.mkdir()
+    table = f'[[assume.requirement]]\nid = "A1"\nsentence = "{ASSUMED}"\n'
+    folders = with_assumption(by_kind), str(written(by_table, FIGHT, more=table))
+    runs = [fretc("analyze", folder, "--format", "json") for folder in folders]
+    found, other = (json.loads(run.out) for run in runs)
+    for each in (*found["components"], *other["components"]):
+        del each["seconds"]
+    assert found == other
+    assert [each["id"] for each in found["assumptions"]] == ["A1"]
+
+
+def test_check_lists_assumptions_and_warns_of_one_about_outputs(
+    fretc: Fretc, tmp_path: Path
+) -> None:
+    run = fretc("check", "--requirements", with_assumption(tmp_path))
+    assert "assumptions about the environment: A1\n3 requirements: " in run.err
+    assert "F563" not in run.err
+    run = fretc("check", "--requirements", with_assumption(tmp_path, "m shall always satisfy run"))
+    assert (
+        "F563 warning: A1 is an assumption about outputs alone: `run`\n"
+        f"  --> {tmp_path}/a1.fret:3:8\n"
+    ) in run.err
+    counts = json.loads(fretc("check", "--requirements", str(tmp_path), "--format", "json").out)
+    assert counts["assumptions"] == ["A1"]
+
+
+def test_assumptions_alone_are_nothing_to_analyze(fretc: Fretc, tmp_path: Path) -> None:
+    write("a.fret", f'+++\nid = "A1"\nkind = "assumption"\n+++\n{ASSUMED}\n')
+    assert fretc("analyze", "a.fret").err.startswith("F909 there is no requirement to analyze")
 
 
 # `fretc check --analyze` -----------------------------------------------------------------------

@@ -57,6 +57,46 @@ def test_a_draft_goes_to_a_file_and_never_over_one(fretc: Fretc) -> None:
     assert Path("new/bindings.toml").read_text("utf-8") == text
 
 
+def test_an_update_adds_what_is_missing_and_keeps_each_byte(fretc: Fretc) -> None:
+    own = f"# mine\r\n{X_TEXT}{HIGH}\n\n# the end"
+    project(own)
+    put("requirements/r2.fret", "the rover shall always satisfy x < 1 m & battery > 2 | ready\n")
+    before = Path("requirements/bindings.toml").read_bytes()
+    run = fretc("bind", "--from", "run.mcap", "--update")
+    assert (run.status, run.out, run.err) == (0, "", "wrote requirements/bindings.toml\n")
+    after = Path("requirements/bindings.toml").read_bytes()
+    assert after.startswith(before.rstrip(b"\n"))
+    added = after[len(before) :].decode()
+    assert [line for line in added.splitlines() if line.startswith("[")] == [
+        "[proposition.ready]",
+        "[signal.battery]",
+    ]
+    again = fretc("bind", "--from", "run.mcap", "--update")
+    assert "nothing to add" in again.err
+    assert Path("requirements/bindings.toml").read_bytes() == after
+
+
+def test_an_update_takes_the_signal_that_a_draft_has_under_that_name(fretc: Fretc) -> None:
+    project(X_TEXT)
+    messages = [m for i in range(12) for m in (number(i, S + i * 100 * MS, "/volts"),)]
+    write(Path("other.mcap"), messages)
+    put("requirements/r1.fret", "the rover shall always satisfy volts < 12\n")
+    assert fretc("bind", "--from", "other.mcap", "--update").status == 0
+    assert "[signal.volts]\n" in Path("requirements/bindings.toml").read_text("utf-8")
+    assert fretc("audit", "other.mcap").status == 0
+
+
+def test_an_update_needs_bindings_and_a_log(fretc: Fretc) -> None:
+    put("requirements/r1.fret", R1)
+    assert fretc("bind", "--update").status == 2
+    run = fretc("bind", "--from", "run.mcap", "--update")
+    assert (run.status, "there are no bindings to update" in run.err) == (2, True)
+    project("[clock\n")
+    before = Path("requirements/bindings.toml").read_bytes()
+    assert fretc("bind", "--from", "run.mcap", "--update").status == 2
+    assert Path("requirements/bindings.toml").read_bytes() == before
+
+
 def test_a_draft_with_open_propositions_can_be_made_anew(fretc: Fretc) -> None:
     put("requirements/r1.fret", R1)
     where = ("-o", "requirements/bindings.toml")

@@ -24,6 +24,19 @@ def test_the_page_is_made_where_nothing_is_named(project: Fretc) -> None:
     assert (run.status, run.out, run.err) == (0, "", "wrote build/report.html\n")
 
 
+def test_the_page_is_opened_if_that_is_asked(
+    project: Fretc, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    opened: list[str] = []
+    monkeypatch.setattr("click.launch", opened.append)
+    assert project("report").status == 0
+    assert opened == []
+    assert project("report", "--open").status == 0
+    assert project("report", "--open", "--html", "own.html", "--junit", "x.xml").status == 0
+    assert project("report", "--open", "--format", "html").status == 0  # printed
+    assert opened == ["build/report.html", "own.html"]
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("form", [name for name, form in FORMS.items() if form.missing() is None])
 def test_a_form_is_the_same_by_its_own_option_and_by_format(project: Fretc, form: str) -> None:

@@ -1,4 +1,4 @@
-"""`fretc verify --file` of monitors in C, Rust and JavaScript."""
+"""`fretc verify --file` of monitors in C, Rust, Java and JavaScript."""
 
 import json
 import os
@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from fretc.verification.c.build import FLAGS as C_FLAGS
+from fretc.verification.java.language import FLAGS as JAVA_FLAGS
 from fretc.verification.javascript.node import FLAGS as NODE_FLAGS
 from fretc.verification.rust.build import FLAGS as RUST_FLAGS
 from tests.command import PROCESS, Fretc, write
@@ -52,6 +53,13 @@ MADE = {
             ("self.oldest_1 >= 2", "self.oldest_1 >= 1"),
             ("        // r1: what is remembered", "\nabort();"),
             "a monitor in Rust is compiled for its proof, but `rustc` is not installed",
+        ),
+        Made(
+            "Java", "java", "R1Monitor.java", ("R1Monitor.java",), JAVA_FLAGS,
+            ("this.oldest_1 >= 2", "this.oldest_1 >= 1"),
+            ("            this.since_1 = this.oldest_1", "\nabort();"),
+            "a monitor in Java is compiled and run for its proof, but `javac` and `java` are not "
+            "both installed",
         ),
         Made(
             "JavaScript", "js", "r1_monitor.mjs", ("r1_monitor.mjs",), NODE_FLAGS,
@@ -170,7 +178,7 @@ def test_ctrl_c_leaves_no_file_and_no_process(fretc: Fretc, made: Made, tmp_path
         text=True,
         start_new_session=True,
     )
-    explored = "errors.txt" if made.emit == "js" else "monitor.so"
+    explored = "errors.txt" if made.emit in ("js", "java") else "monitor.so"
     deadline = time.monotonic() + 60
     while not [*temporary.glob(f"*/{explored}")] and time.monotonic() < deadline:
         time.sleep(0.05)

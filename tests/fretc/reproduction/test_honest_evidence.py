@@ -99,6 +99,7 @@ VARIABLES: Mapping[str, tuple[Mapping[str, Any], Fields]] = {
 LABELS: Fields = {"label": ({"scenario": "path:{scenario}.mcap"}, {"robot": "metadata:a.b"})}
 MAP: Fields = {"x": ("/state.x",), "y": ("/state.y",)}
 HEADER: Fields = {
+    "kind": ("requirement", "assumption"),
     "title": ("Keep slow, schön langsam",),
     "text": ("The vehicle keeps slow.",),
     "parents": (["HAZ-1"], ["R0"], ["HAZ-1", "R0"]),

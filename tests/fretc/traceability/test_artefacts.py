@@ -12,7 +12,13 @@ from tests.monitoring import requirement
 
 @pytest.mark.parametrize(
     ("target", "file"),
-    [("monitor", "monitors.py"), ("c", "monitors.c"), ("rust", "lib.rs"), ("js", "monitors.mjs")],
+    [
+        ("monitor", "monitors.py"),
+        ("c", "monitors.c"),
+        ("rust", "lib.rs"),
+        ("js", "monitors.mjs"),
+        ("java", "Monitors.java"),
+    ],
 )
 def test_a_proof_about_a_file_for_several_requirements_is_about_the_file_of_today(
     target: str, file: str

@@ -104,6 +104,7 @@ EXPECTED: Mapping[str, dict[str, list[Expected]]] = {
     "header: a number for another name": of(
         ("number stated for p", "1 m", ""), ("number stated for q", "", "1 m")
     ),
+    "header: an assumption": below("kind", "", "assumption"),
     "header: a planned method is taken out": of(("verify", "audit, desk", "audit")),
     "header: no plan": of(("verify", "audit, desk", "")),
     # Whatever is planned in addition is reported, and makes nothing suspect.

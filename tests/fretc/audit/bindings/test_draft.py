@@ -6,10 +6,10 @@ from pathlib import Path
 import pytest
 
 from compiler.project.folder import load
-from fretc.audit.bindings.draft import (
+from fretc.audit.bindings.draft import draft
+from fretc.audit.bindings.needs import (
     MissingProposition,
     MissingSignal,
-    draft,
     missing_propositions,
     missing_signals,
 )

@@ -297,6 +297,15 @@ HEADERS = [
     changed("a number for another name", put(R1, "{ p =", "{ q ="), "params R1"),
     changed("a planned method is taken out", put(R1, '["audit", "desk"]', '["audit"]'), "plan R1"),
     changed("no plan", put(R1, 'verify = ["audit", "desk"]\n', ""), "plan R1"),
+    changed(
+        "an assumption",
+        put(R1, 'title = "Answer"', 'kind = "assumption"\ntitle = "Answer"'),
+        "text R1",
+    ),
+    changed(
+        "the kind by its name",
+        put(R1, 'title = "Answer"', 'kind = "requirement"\ntitle = "Answer"'),
+    ),
     changed("the number in another unit", put(R1, '"1 m"', '"100 cm"')),
     changed("the number with more digits", put(R1, '"1 m"', '"1.00 m"')),
     changed("approved", put(R1, '"draft"', '"approved"')),

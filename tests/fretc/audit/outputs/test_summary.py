@@ -168,6 +168,7 @@ def test_a_summary_as_json(fretc: Fretc, results: list[dict[str, Any]]) -> None:
         "runs": 3,
         "satisfied": 1,
         "violated": 0,
+        "assumption_broken": 0,
         "inconclusive": 0,
         "vacuous": 1,
         "no_data": 1,

@@ -13,8 +13,8 @@ import zstandard
 
 from compiler.files.checked_json import SchemaError
 from compiler.files.user_key import user_key
-from fretc.audit.evidence.result_summaries import summary_of
-from fretc.audit.store import container, register
+from fretc.audit.evidence.result_summaries import ResultSummaries, summary_of
+from fretc.audit.store import container, reader, register
 from fretc.audit.store.anywhere import read, source
 from fretc.audit.store.container import FILE, StoreError, next_unfinished, packed
 from fretc.audit.store.reader import Store
@@ -108,6 +108,41 @@ def test_a_forged_summary_is_an_error_for_every_reader(store: Path) -> None:
         assert whole.message.endswith("cannot be read: a summary contradicts its record")
 
 
+def test_facts_are_taken_from_summaries_once_all_are_compared(
+    store: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    decoded: list[int] = []
+
+    def counting(row: container.Row, *args: Any, **named: Any) -> Any:
+        decoded.append(row.place)
+        return container.unpacked(row, *args, **named)
+
+    monkeypatch.setattr(reader, "unpacked", counting)
+    found = counted(by_summaries=False)
+    facts = [*found.runs()]
+    known = ResultSummaries.of(found).source
+    assert decoded == [0, 1, 0, 1]
+    assert [*known.runs()] == facts
+    assert [*known.summaries()] == [*enumerate(summary_of(one) for run in RUNS for one in run)]
+    assert decoded == [0, 1, 0, 1]
+    assert [index for index, _ in known.thresholds({"R1"})] == [0, 1]
+    assert decoded == [0, 1, 0, 1, 0, 1]
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        ("summary", "a summary is not the one that was written"),
+        ("record", "a record is not the one that was written"),
+    ],
+)
+def test_what_changes_after_the_comparison_is_an_error(store: Path, change: str, why: str) -> None:
+    known = ResultSummaries.of(counted(by_summaries=False)).source
+    edit(store, f"UPDATE runs SET {change} = (SELECT {change} FROM runs WHERE place = 1)")
+    with pytest.raises(StoreError, match=why):
+        [*known.runs(), *known.situations({"R1"})]
+
+
 @pytest.mark.parametrize(
     "change",
     [
@@ -167,3 +202,5 @@ def test_a_store_without_summaries_is_read_as_before(store: Path) -> None:
     found = counted(by_summaries=True)
     assert not found.by_summaries
     assert [one.verdict for _, one in found.summaries()] == ["violated", "satisfied"]
+    assert found.after_summaries() is found
+    assert [facts.run for facts in ResultSummaries.of(found).source.runs()] == ["a", "b"]

@@ -154,7 +154,7 @@ def test_a_proof_of_another_text_is_suspect(
 
 
 @pytest.mark.slow
-@each("kind", ["c", "rust", "js"])
+@each("kind", ["c", "rust", "js", "java"])
 def test_a_proof_of_the_monitor_in_another_language_stands(
     tmp_path_factory: pytest.TempPathFactory, kind: str
 ) -> None:
@@ -163,7 +163,7 @@ def test_a_proof_of_the_monitor_in_another_language_stands(
     (formalized,) = project(folder, requirement("R1", SENTENCE, verify=["verify"])).formalized
     made = reversed(TARGETS[kind].emit([formalized]))  # a crate of samples has a `lib.rs` as well
     files = {file.path.name: sha256(file.text) for file in made}
-    (name,) = files.keys() & {"r1_monitor.c", "lib.rs", "r1_monitor.mjs"}
+    (name,) = files.keys() & {"r1_monitor.c", "lib.rs", "r1_monitor.mjs", "R1Monitor.java"}
     for artefacts, doubts in ((files, 0), ({**files, name: "0" * 64}, 1)):
         report = reported(folder, {"artefacts": artefacts}, verify=["verify"])
         (view,) = as_json(report)["requirements"][0]["proofs"]
@@ -171,7 +171,7 @@ def test_a_proof_of_the_monitor_in_another_language_stands(
 
 
 PARTS = (("R1", "R2", "R3"), ("R1", "R2"), ("R1", "R3"), ("R2", "R1"), ("R1",))
-KINDS = ("monitor", "c", "rust", "js")
+KINDS = ("monitor", "c", "rust", "js", "java")
 
 
 @pytest.mark.slow

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fretc.verification.compiled import library
+from fretc.verification.compiled import memory
 from fretc.verification.compiled.delays import FreeLetter, FreeWindow
 from fretc.verification.compiled.verifying import explored
 from monitors.kernel.stepping import Window
@@ -80,13 +80,13 @@ def test_a_line_of_another_kind_proves_nothing(tongue: Tongue, checker: Checker)
     """A library whose lines are no such lines is compared with all of their bits."""
     one = requirement(RINGED[0], "R1")
     checked, executable = checker.prepared(tongue.given(one), one)
-    approximation = library.CompiledDelayed
+    approximation = memory.CompiledDelayed
     honest = approximation.step
 
-    def length(self: library.CompiledDelayed, ring: library.RingOffsets) -> int:
+    def length(self: memory.CompiledDelayed, ring: memory.RingOffsets) -> int:
         return 4
 
-    def step(self: library.CompiledDelayed, state: bytes, letter: FreeLetter) -> tuple[object, ...]:
+    def step(self: memory.CompiledDelayed, state: bytes, letter: FreeLetter) -> tuple[object, ...]:
         told = honest(self, state, letter)
         return (*told[:-1], None) if fault == "written" else (7, *told[1:])
 

@@ -51,7 +51,7 @@ FAULTS = (
     (NUMBER, 'battery = measurement(speed, "battery")', REFUSED),
     (NUMBER, 'battery = measurement(battery, "speed")', REFUSED),
     ('docking = truth_value(docking, "docking")', "docking = bool(docking)", REFUSED),
-    ("battery: Number, speed: Number, docking: Truth, level: Number) -> tuple", "battery: Number, speed: Number, docking: Truth, level: Number = 3) -> tuple", REFUSED),
+    ("battery: Number, speed: Number, docking: Truth, level: Number) -> \"tuple", "battery: Number, speed: Number, docking: Truth, level: Number = 3) -> \"tuple", REFUSED),
     ("def truths(self, battery: Number, speed", "def truths(self, speed: Number, battery", REFUSED),
     ('"battery": Variable("battery", "number")', '"battery": Variable("battery", "truth")', REFUSED),
     ('"battery": Variable("battery", "number")', '"speed": Variable("battery", "number")', REFUSED),

@@ -246,7 +246,7 @@ def test_a_name_that_is_none_of_ros_is_reported(steps: Steps) -> None:
 def test_a_missing_package_is_one_error(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     from fretc.logs.messages import ros2_types
 
-    ros2_types._stores.cache_clear()
+    monkeypatch.setattr(ros2_types, "_stores", ros2_types._stores.__wrapped__)  # without its cache
     monkeypatch.setitem(sys.modules, name, None)
     (item,) = Zenoh("tcp/127.0.0.1:1").arrivals(["/x"])
     assert isinstance(item, Problem)

@@ -171,9 +171,8 @@ public:
   // The last message before the process ends.
   void close()
   {
-    if (stand_down()) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    }
+    stand_down();
+    flush();
   }
 
 private:
@@ -264,20 +263,32 @@ private:
     diagnostics_->publish(array);
   }
 
-  bool stand_down()
+  void stand_down()
   {
-    const bool was_active = supervisor_ != nullptr;
-    if (was_active) {
+    if (supervisor_) {
       request(true);
     }
     timer_.reset();
     subscriptions_.clear();
     supervisor_.reset();
-    return was_active;
+  }
+
+  // Wait until the last request is sent: what is destroyed sends nothing again.
+  void flush()
+  {
+    if (!stops_) {
+      return;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    try {
+      stops_->wait_for_all_acked(std::chrono::seconds(1));
+    } catch (const std::runtime_error &) {  // not every middleware can tell
+    }
   }
 
   void take_back()
   {
+    flush();
     stops_.reset();
     verdicts_.reset();
     diagnostics_.reset();

@@ -15,6 +15,7 @@ import nav_msgs.msg
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
 import rclpy
 from rclpy.clock import Clock, ClockType
+from rclpy.duration import Duration
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn
 from rclpy.qos import DurabilityPolicy, qos_profile_sensor_data, QoSProfile
@@ -66,6 +67,8 @@ FIXED = (
 INACTIVE = Status(STALE, "node", "not active: nothing is judged", ())
 FLUSH = 0.1
 """Seconds for the last request to leave this process."""
+ACKNOWLEDGED = 1.0
+"""Seconds at most for subscribers to acknowledge it."""
 UNREGISTERED = "Transition is not registered"
 KEPT = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 """Reliable, and late subscribers get the last message."""
@@ -143,10 +146,9 @@ class MonitorNode(LifecycleNode):
         return self.on_shutdown(state)
 
     def close(self):
-        """Say the last that is said, before the process ends."""
-        if self._status_publisher is not None:
-            self._stand_down()
-            time.sleep(FLUSH)
+        """Stop the robot before the process ends."""
+        self._stand_down()
+        self._flush()
 
     def _stand_down(self):
         if self._status_publisher is not None:
@@ -155,7 +157,18 @@ class MonitorNode(LifecycleNode):
         while self._destructions:
             self._destructions.pop()()
 
+    def _flush(self):
+        """Wait until the last request is sent: what is destroyed sends nothing again."""
+        if self._stops is None:
+            return
+        time.sleep(FLUSH)
+        try:
+            self._stops.wait_for_all_acked(Duration(seconds=ACKNOWLEDGED))
+        except RuntimeError:
+            pass  # not every middleware can tell
+
     def _take_back(self):
+        self._flush()
         for publisher in filter(None, (self._stops, self._verdicts)):
             self.destroy_lifecycle_publisher(publisher)
         if self._diagnostics is not None:
