@@ -23,6 +23,7 @@ _MODULES: Mapping[str, str] = {
     "java": "java.monitor",
     "ajpf": "ajpf.properties",
     "ajpf-bundle": "ajpf.bundle",
+    "agent-runtime": "ajpf.runtime",
     "interceptor": "python.interceptor",
     "ros1-package": "ros.ros1",
     "ros2-package": "ros.ros2",

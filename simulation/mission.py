@@ -19,8 +19,8 @@ from simulation.nodes.bus import Bus
 from simulation.nodes.driving import DriverNode
 from simulation.nodes.guarding import WARM_UP, Gate, SafetyFunctionNode
 from simulation.nodes.navigation import RESOLUTION, PoseError
-from simulation.nodes.safety import Decision, Interceptor, TooClose
-from simulation.recording import TOPICS, Encoding, MissionRecording, recording
+from simulation.nodes.safety import Agent, Decision, Interceptor, TooClose
+from simulation.recording import AGENT_TRACE, TOPICS, Encoding, MissionRecording, recording
 from simulation.world.lidar import Lidar
 from simulation.world.motion import STANDSTILL, Pose
 from simulation.world.robot import PHYSICS_STEP, Robot
@@ -123,6 +123,7 @@ def record(
     max_seconds: float | None = None,
     progress: Callable[[float], None] | None = None,
     versions: dict[str, str] | None = None,
+    agent: Agent | None = None,
 ) -> Mission:
     """Run a mission and write its log to `out`, replacing what is there.
 
@@ -137,14 +138,16 @@ def record(
             given, what the scenario says.
         progress: called once for every simulated second, with the seconds so far.
         versions: more to say in the log of what made it.
+        agent: decides instead of `decision`; the log has what it tells.
 
     Raises:
         OSError: `out` cannot be written. Whatever is raised, no half file stays behind.
         ValueError: the scenario moves an obstacle that the store does not have.
     """
     limit = scenario.duration if max_seconds is None else max_seconds
-    with recording(out, encoding, scenario.recorder, EPOCH) as log:
-        run = _MissionRun(scenario, interceptor, seed, log, decision)
+    topics = TOPICS if agent is None else (*TOPICS, AGENT_TRACE)
+    with recording(out, encoding, scenario.recorder, EPOCH, topics) as log:
+        run = _MissionRun(scenario, interceptor, seed, log, decision, agent)
         ticks = round(limit * _SECOND / TICK)
         while run.tick < ticks and not run.over:
             if progress and run.tick % _TICKS_PER_SECOND == 0:
@@ -205,6 +208,7 @@ class _MissionRun:
         seed: int,
         log: MissionRecording,
         decision: Decision | None,
+        agent: Agent | None = None,
     ) -> None:
         self.tick = 0
         self._scenario, self._seed, self._log = scenario, seed, log
@@ -220,8 +224,8 @@ class _MissionRun:
         self._bus.subscribe("/cmd_vel_filtered", self._hear_wheels)
         self._driver = DriverNode(self._bus, STORE, scenario, lidar, EPOCH)
         if scenario.safety.on:
-            rule = decision or TooClose(lidar, scenario.safety.threshold)
-            SafetyFunctionNode(self._bus, rule, scenario.safety, EPOCH)
+            rule = agent or decision or TooClose(lidar, scenario.safety.threshold)
+            SafetyFunctionNode(self._bus, rule, scenario.safety, EPOCH, agent)
         Gate(self._bus, interceptor, scenario.interceptor.period, EPOCH)
         self._judge = _Judge(self._robot)
         self._bus.subscribe("/gwendolen_control", self._judge.hear_stop)

@@ -72,6 +72,9 @@ TOPICS = (
     RecordedTopic("/clock", "rosgraph_msgs/msg/Clock", 1, reliability="best_effort"),
 )
 
+AGENT_TRACE = RecordedTopic("/agent/trace", "std_msgs/msg/String")
+"""What an agent tells of itself; only in the log of a mission with an agent."""
+
 
 class MissionRecording:
     """An MCAP file that is being written."""

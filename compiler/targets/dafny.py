@@ -35,7 +35,7 @@ from compiler.logic.spelling.reserved_words import DAFNY
 from compiler.targets.comparison_names import comparison_names, in_words
 from compiler.targets.dafny_claims import CHANNELS, ResponseDelay, delay, no_loop_reason
 from compiler.targets.interceptor_options import options as core
-from compiler.targets.target import Target, file_of_each, not_expressible, stem
+from compiler.targets.target import LOOP, Target, file_of_each, not_expressible, stem
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.bindings.declarations import Declarations
@@ -291,6 +291,6 @@ TARGET = Target(
     file_of_each("dfy", lambda requirement, options: text(requirement, options.declarations)),
     refuse,
     next_step="`dafny verify {}` proves it",
-    of_loop=True,
+    reads=LOOP,
     names=_names,
 )

@@ -40,6 +40,8 @@ class TargetOptions:
 
 
 DEFAULT = TargetOptions()
+LOOP = ("interceptor", "assume")
+"""The tables of the bindings about the closed loop."""
 
 
 class Emit(Protocol):
@@ -78,8 +80,8 @@ class Target:
     """A reason to refuse one file for all requirements; none of them is refused alone."""
     of_bindings: bool = False
     """Whether the output depends only on the bindings."""
-    of_loop: bool = False
-    """Whether the target reads `[interceptor]` and `[assume]` of the bindings."""
+    reads: tuple[str, ...] = ()
+    """The shared tables of the bindings that the target reads, as `LOOP`."""
     together: bool = False
     """Whether all requirements always become one monitor; `per_rule` is False then."""
     next_step: str = ""

@@ -72,7 +72,7 @@ def safety_function(threshold: float = 0.05) -> SafetyFunction:
     Args:
         threshold: metres, in place of the 5 cm of the bindings.
     """
-    return SafetyFunction(monitor_text(), _declarations(threshold))
+    return SafetyFunction(monitor_text(), declarations(threshold))
 
 
 def interceptor(options: Options, publish: Callable[[Sequence[float]], None]) -> Any:
@@ -105,7 +105,8 @@ def monitor_text() -> str:
 
 
 @lru_cache(maxsize=8)
-def _declarations(threshold: float) -> Declarations:
+def declarations(threshold: float) -> Declarations:
+    """The bindings with another threshold of the safety function, in metres."""
     declared = project().declarations
     assert declared is not None
     text = declared.source.text

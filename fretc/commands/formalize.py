@@ -97,8 +97,8 @@ def compile_(
     if weaken:
         _check_weaken(kinds)
     paths = or_fail(expanded_paths(files))
-    of_loop = any(TARGETS[kind].of_loop for kind in kinds)
-    project = load(paths, bindings, reads=("interceptor", "assume") if of_loop else ())
+    reads = {table for kind in kinds for table in TARGETS[kind].reads}
+    project = load(paths, bindings, reads=reads)
     undecided = _undecided(project.sound.formalized)
     print_diagnostics([*project.diagnostics, *project.answered(undecided)])
     if output_format == "json" and set(kinds) <= {"ltl"} and not has_errors(project.general):

@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -36,11 +37,12 @@ from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source, Span
 
 if TYPE_CHECKING:
+    from simulation.nodes.safety import Agent
     from simulation.world.scenario import Scenario
 
 
 @click.command(
-    epilog=extras({"sim": "everything except --list"}),
+    epilog=extras({"sim": "everything except --list", "live": "--agent"}),
 )
 @click.argument("scenarios", nargs=-1, type=PATH, metavar="[SCENARIO]...")
 @output_option(
@@ -68,6 +70,12 @@ if TYPE_CHECKING:
 @path_option("--png", metavar="FILE", help="Also draw the mission as a picture.")
 @path_option("--gif", metavar="FILE", help="Also draw the mission as an animation.")
 @click.option(
+    "--agent",
+    "with_agent",
+    is_flag=True,
+    help="The safety function is the agent of R1, in MCAPL (environment variable AJPF_HOME).",
+)
+@click.option(
     "--campaign",
     type=click.IntRange(min=1),
     metavar="N",
@@ -84,6 +92,7 @@ def simulate(
     encoding: str,
     png: str | None,
     gif: str | None,
+    with_agent: bool,
     campaign: int | None,
     jobs: int,
     output_format: str,
@@ -104,9 +113,9 @@ def simulate(
         return
     require_simulation()
     if campaign is not None:
-        if png or gif or duration is not None or encoding != "ros2":
+        if png or gif or with_agent or duration is not None or encoding != "ros2":
             raise click.UsageError(
-                "--campaign cannot be combined with --png, --gif, --duration or --encoding"
+                "--campaign cannot be combined with --png, --gif, --agent, --duration or --encoding"
             )
         _count(
             [_scenario(n) for n in scenarios or names()],
@@ -121,7 +130,28 @@ def simulate(
     if output is None:
         raise click.UsageError("missing option '--output'")
     scenario = _scenario(scenarios[0] if scenarios else NOMINAL)
-    _record(scenario, output, seed, duration, encoding, {"png": png, "gif": gif})
+    with _agent(scenario, with_agent) as agent:
+        _record(scenario, output, seed, duration, encoding, {"png": png, "gif": gif}, agent)
+
+
+@contextmanager
+def _agent(scenario: Scenario, wanted: bool) -> Iterator[Agent | None]:
+    """The running agent, if it is wanted."""
+    if not wanted:
+        yield None
+        return
+    from fretc.campaigns.agent import AgentError, agent
+    from simulation.recording import TOPICS
+
+    types = {topic.name: topic.type for topic in TOPICS}
+    with ExitStack() as stack:
+        try:
+            running = stack.enter_context(agent(scenario.safety.threshold, types))
+        except AgentError as error:
+            fail(diagnostic("agent_not_started", why=str(error)))
+        except ModuleNotFoundError as error:
+            fail(missing_extra("the agent needs", (str(error.name),), "live"))
+        yield running
 
 
 def require_simulation() -> None:
@@ -216,6 +246,7 @@ def _record(
     duration: float | None,
     encoding: str,
     pictures: Mapping[str, str | None],
+    agent: Agent | None,
 ) -> None:
     from fretc.campaigns.campaign import intercepted
     from fretc.campaigns.experiment import safety_function
@@ -242,6 +273,7 @@ def _record(
                 limit,
                 lambda now: show(int(now), f"{now:.0f} s"),
                 {"fretc": __version__},
+                agent,
             )
         except OSError as error:
             fail(not_written(out, error.strerror or str(error)))

@@ -308,11 +308,25 @@ class LabelSource:
     """Record and key (`build.version`), or a path pattern (`fretish.reading.name_patterns`)."""
 
 
+@dataclass(frozen=True, slots=True)
+class ActionBinding:
+    """`[action.NAME]`: what an action of an agent publishes."""
+
+    action: str
+    topic: str
+    type: str
+    """Such as `std_msgs/Bool`."""
+    message: str
+    """In JSON."""
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
 Part = tuple[str, str]
 """`("signal", "vx")`, `("proposition", "near")`, `("clock", "")`, `("map", "")`."""
-SHARED = ("interceptor", "assume", "environment", "map", "run")
+SHARED = ("interceptor", "assume", "environment", "map", "run", "action")
 """Tables that belong to no single requirement: `[interceptor]`, `[assume]`,
-`[[assume.requirement]]`, `[map]` and `[run.label]`. Only some commands read them."""
+`[[assume.requirement]]`, `[map]`, `[run.label]` and `[action.NAME]`. Only some commands read
+them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -348,6 +362,8 @@ class Declarations:
     environment: tuple[RequirementEntry, ...] = ()
     """`[[assume.requirement]]`: assumptions about the environment, for realizability analysis. No
     verdict on a log depends on them."""
+    actions: Mapping[str, ActionBinding] = field(default_factory=dict)
+    """`[action.NAME]`: name of an agent's action → what it publishes."""
 
     @property
     def signal_names(self) -> tuple[str, ...]:

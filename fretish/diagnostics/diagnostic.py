@@ -210,6 +210,7 @@ class Code(Enum):
     BAD_AJPF_RESULT = ("F616", "a result of AJPF cannot be read")
     FOREIGN_AJPF_RESULT = ("F617", "a result of AJPF belongs to no current requirement")
     NOT_OF_ALL = ("F618", "an output for all requirements cannot include some of them")
+    ACTION_NOT_BOUND = ("F619", "an action of the agent is not bound to a topic")
     TOO_LARGE = ("F670", "the output would be too large")
 
     SHORT_HOLD = ("F630", "the interceptor holds zero no longer than messages may be lost")
@@ -232,6 +233,7 @@ class Code(Enum):
     BUSY = ("F912", "another audit writes the same evidence")
     BAD_QUERY = ("F913", "the query cannot be answered")
     BAD_SCENARIO = ("F914", "the scenario of a simulation cannot be run")
+    AGENT_NOT_STARTED = ("F915", "the agent of a simulation cannot be started")
     NO_KEY = ("F920", "the user has no key, so results of an interrupted audit are not kept")
     FOREIGN_PLACE = ("F921", "evidence names a log outside the permitted places")
     TOO_COSTLY = ("F930", "the input needs more CPU time or memory than allowed")

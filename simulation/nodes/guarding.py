@@ -5,7 +5,7 @@ from typing import Any
 
 from simulation.nodes import messages
 from simulation.nodes.bus import Bus
-from simulation.nodes.safety import Decision, Interceptor, stop_requested
+from simulation.nodes.safety import Agent, Decision, Interceptor, stop_requested
 from simulation.world.motion import BodyVelocity
 from simulation.world.scenario import Safety
 
@@ -28,8 +28,16 @@ _SCAN_PERIOD = 100_000_000
 class SafetyFunctionNode:
     """Hears /scan, /odom and /manual_control; says /gwendolen_control, on change and regularly."""
 
-    def __init__(self, bus: Bus, decision: Decision, options: Safety, epoch: int) -> None:
-        self._bus, self._decision = bus, decision
+    def __init__(
+        self,
+        bus: Bus,
+        decision: Decision,
+        options: Safety,
+        epoch: int,
+        agent: Agent | None = None,
+    ) -> None:
+        """`agent`: the same as `decision`, if that is an agent; it says /agent/trace, too."""
+        self._bus, self._decision, self._agent = bus, decision, agent
         self._late = round(options.late * _SECOND)
         self._late_from = epoch + WARM_UP
         self._end = None if options.dies_at is None else epoch + round(options.dies_at * _SECOND)
@@ -57,6 +65,8 @@ class SafetyFunctionNode:
 
     def _decide(self, now: int) -> None:
         demanded = self._decision.step(now)
+        for told in self._agent.told() if self._agent else ():
+            self._bus.publish("/agent/trace", messages.text(told), now + ANSWER_LATENCY)
         self._answer(stop_requested(self._requested, demanded=demanded, manual=self._manual), now)
 
     def _answer(self, requested: bool, now: int) -> None:
@@ -65,6 +75,8 @@ class SafetyFunctionNode:
             self._say(now)
 
     def _say(self, now: int) -> None:
+        if self._agent is not None and not self._agent.speaks:
+            return
         if self._end is None or now < self._end:
             message = messages.boolean(self._requested)
             late = self._late if now >= self._late_from else 0

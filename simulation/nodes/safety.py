@@ -54,6 +54,19 @@ class Decision(Protocol):
         ...
 
 
+class Agent(Decision, Protocol):
+    """A decision of another program, which tells what it believes and does."""
+
+    @property
+    def speaks(self) -> bool:
+        """Whether it answers; a safety function that does not is silent."""
+        ...
+
+    def told(self) -> Sequence[str]:
+        """What it has told of itself since the last call."""
+        ...
+
+
 class TooClose:
     """R1 by hand: stop when the clearance is below `threshold` metres, or unknown."""
 

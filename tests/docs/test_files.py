@@ -20,6 +20,7 @@ from fretc.traceability import lock, texts, waivers
 from fretc.traceability.chain import ChainItem
 from fretish.bindings import declarations as d
 from fretish.bindings.tables import (
+    actions,
     clock,
     coordinates,
     interceptor,
@@ -127,6 +128,7 @@ TABLES = {
     "assume": interceptor._ASSUME,
     "map": coordinates._MAP,
     "run": labels._RUN,
+    "action.NAME": actions._FIELDS,
     "hazards.toml": hazards._FIELDS,
     "waivers.toml": waivers._FIELDS,
     "fretc.toml": settings._FIELDS,

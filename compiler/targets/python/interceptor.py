@@ -16,7 +16,7 @@ from compiler.files.templating import render
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.interceptor_options import options as counted
 from compiler.targets.interceptor_options import repetition, ticks
-from compiler.targets.target import DEFAULT, Target, TargetOptions
+from compiler.targets.target import DEFAULT, LOOP, Target, TargetOptions
 from fretish.bindings.declarations import Declarations, Interception, InterceptorForm
 from fretish.bindings.tables.interceptor import TABLE
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -191,5 +191,5 @@ TARGET = Target(
     remarks=remarks,
     per_rule=False,
     of_bindings=True,
-    of_loop=True,
+    reads=LOOP,
 )

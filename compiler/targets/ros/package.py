@@ -21,6 +21,7 @@ from compiler.targets.python import interceptor, monitor, perception
 from compiler.targets.target import TargetOptions, stem
 from compiler.targets.witness_traces import witness_traces
 from fretish.bindings.declarations import Interception, Signal, short_type
+from fretish.bindings.tables.actions import ROS_TYPE
 from fretish.bindings.tables.interceptor import TABLE
 from fretish.classes.frozen import dataclass
 from fretish.clock import TimeSource
@@ -107,7 +108,6 @@ class Package:
 
 # What cannot be a package -----------------------------------------------------------------------
 
-_TYPE = re.compile(r"(?P<package>[a-z]\w*)/(?P<message>[A-Z]\w*)", re.ASCII)
 _TOPIC = re.compile(r"/?[A-Za-z]\w*(?:/[A-Za-z]\w*)*", re.ASCII)
 
 
@@ -130,7 +130,7 @@ def _unsubscribable(requirement: FormalizedRequirement) -> Iterator[Diagnostic]:
             for declared_signal in declared
             if declared_signal.path.topic == topic
         ]
-        if _TYPE.fullmatch(kind) is None:
+        if ROS_TYPE.fullmatch(kind) is None:
             what = f"has the type `{kind}`, which is not a ROS type" if kind else "has no type"
             fix = f'add `type = "sensor_msgs/LaserScan"`, say, to `[signal.{signal.name}]`'
             yield _refusal(requirement, f"`{signal.name}` {what}", span, fix)
@@ -233,7 +233,7 @@ def _signals(requirements: Sequence[FormalizedRequirement]) -> list[Signal]:
 def _topics(signals: Sequence[Signal]) -> Iterator[SubscribedTopic]:
     for topic in dict.fromkeys(signal.path.topic for signal in signals):
         own = [signal for signal in signals if signal.path.topic == topic]
-        kind = _TYPE.fullmatch(_kind(own[0]))
+        kind = ROS_TYPE.fullmatch(_kind(own[0]))
         assert kind is not None, "it is refused"
         fields = dict.fromkeys(str(signal.path).removeprefix(f"{topic}.") for signal in own)
         yield SubscribedTopic(topic, kind["package"], kind["message"], tuple(fields))

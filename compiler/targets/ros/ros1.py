@@ -13,7 +13,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.python import interceptor
 from compiler.targets.python.monitor import remark
 from compiler.targets.ros import package as shared
-from compiler.targets.target import DEFAULT, Target, TargetOptions
+from compiler.targets.target import DEFAULT, LOOP, Target, TargetOptions
 
 
 def emit(
@@ -75,6 +75,6 @@ TARGET = Target(
     refuse_project=shared.refuse_project,
     per_rule=False,
     together=True,
-    of_loop=True,
+    reads=LOOP,
     next_step="put its folder into the `src` of a catkin workspace; see its README.md",
 )

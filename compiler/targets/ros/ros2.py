@@ -16,7 +16,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.python import interceptor, monitor
 from compiler.targets.ros import package as shared
 from compiler.targets.ros.package import Package, SubscribedTopic
-from compiler.targets.target import DEFAULT, Target, TargetOptions
+from compiler.targets.target import DEFAULT, LOOP, Target, TargetOptions
 
 _SENSORS = {"sensor_msgs", "nav_msgs"}
 """Packages of messages that drivers publish with best effort."""
@@ -133,6 +133,6 @@ TARGET = Target(
     refuse_project=shared.refuse_project,
     per_rule=False,
     together=True,
-    of_loop=True,
+    reads=LOOP,
     next_step="`colcon build` builds it, in the `src` of a workspace",
 )

@@ -28,7 +28,7 @@ from compiler.targets.python.monitor import description_of
 from compiler.targets.ros import package as shared
 from compiler.targets.ros.package import Package
 from compiler.targets.ros.ros2 import container, qos
-from compiler.targets.target import DEFAULT, Target, TargetOptions
+from compiler.targets.target import DEFAULT, LOOP, Target, TargetOptions
 from compiler.targets.witness_traces import RepeatedTick, witness_traces
 from fretish.bindings.declarations import Reading, Reduce
 from fretish.clock import TimeSource
@@ -225,6 +225,6 @@ TARGET = Target(
     refuse_project=shared.refuse_project,
     per_rule=False,
     together=True,
-    of_loop=True,
+    reads=LOOP,
     next_step="`colcon build` builds it, in the `src` of a workspace",
 )

@@ -17,7 +17,8 @@ from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source, Span
 from fretish.reading.toml_text import Tables, unknown_key
 
-_ACTION = re.compile(r"[a-z][A-Za-z0-9_]*")
+ACTION = re.compile(r"[a-z][A-Za-z0-9_]*")
+"""A name of Gwendolen."""
 T = TypeVar("T")
 Choice = TypeVar("Choice", bound=StrEnum)
 
@@ -131,7 +132,7 @@ class Fields:
 
     def _action(self, table: Mapping[str, Any], at: tuple[str, ...]) -> str:
         action = table.get("action", "")
-        if action == "" or (isinstance(action, str) and _ACTION.fullmatch(action)):
+        if action == "" or (isinstance(action, str) and ACTION.fullmatch(action)):
             return str(action)
         self._say(diagnostic("bad_action", self.tables.value(*at, "action")))
         return ""

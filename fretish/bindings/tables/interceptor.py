@@ -45,7 +45,7 @@ _SENTENCE_HEADER = re.compile(
     r"^[ \t]*\[\[[ \t]*assume[ \t]*\.[ \t]*requirement[ \t]*\]\]", re.MULTILINE
 )
 _ANY_HEADER = re.compile(r"^[ \t]*\[", re.MULTILINE)
-_TOPIC = re.compile(r"(?:/?[A-Za-z_]\w*|~)(?:/[A-Za-z_]\w*)*", re.ASCII)
+TOPIC = re.compile(r"(?:/?[A-Za-z_]\w*|~)(?:/[A-Za-z_]\w*)*", re.ASCII)
 """A ROS topic name; no part begins with a digit."""
 
 
@@ -158,7 +158,7 @@ class InterceptorTables(Fields):
             if key != "scan":
                 self._absent("interceptor", key, '"/TOPIC"')
             return None
-        if isinstance(value, str) and _TOPIC.fullmatch(value):
+        if isinstance(value, str) and TOPIC.fullmatch(value):
             return value
         self._say(diagnostic("interceptor_topic", self.tables.value("interceptor", key), key=key))
         return None

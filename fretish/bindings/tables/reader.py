@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
 from fretish.bindings.declarations import Declarations, LoopAssumptions, Part, Proposition, Signal
+from fretish.bindings.tables.actions import ActionTables
 from fretish.bindings.tables.clock import ClockTable
 from fretish.bindings.tables.coordinates import MapTable
 from fretish.bindings.tables.fields import Fields, Notes
@@ -20,7 +21,7 @@ from fretish.reading.limits import with_budget
 from fretish.reading.toml_text import Tables, read
 
 _TABLES = ("clock", "signal", "proposition", "variable", "interceptor", "assume", "map", "run",
-           "fret")  # fmt: skip
+           "action", "fret")  # fmt: skip
 S = TypeVar("S")
 T = TypeVar("T", Signal, Proposition)
 
@@ -84,6 +85,7 @@ class _TablesReader(Fields):
             self._shared("run", LabelTable(tables, notes).labels),
             VariableTables(tables, notes).kept(),
             self._shared("environment", loop.sentences),
+            self._shared("action", ActionTables(tables, notes).actions),
         )
 
     def _shared(self, kind: str, read: Callable[[], S]) -> S:

@@ -360,6 +360,7 @@ def test_comments_and_json_give_the_map_back() -> None:
         "java": {"class": "class_2", "int": "int_2"},
         "ajpf": {"T": "v_T"},
         "ajpf-bundle": {"T": "v_T"},
+        "agent-runtime": {"T": "v_T"},
         "dafny": {"class": "class_", "int": "int_"},
         "smv": {"T": "T_2", "init": "init_2"},
         "prism": {"T": "T_2", "int": "int_2", "init": "init_2"},
