@@ -101,7 +101,7 @@ publishers = {}
 for reliability in ("RELIABLE", "BEST_EFFORT"):
     for durability in ("TRANSIENT_LOCAL", "VOLATILE"):
         qos = QoSProfile(
-            depth=10,
+            depth=1000,  # so that the first stays
             reliability=ReliabilityPolicy[reliability],
             durability=DurabilityPolicy[durability],
         )
@@ -131,8 +131,5 @@ def test_a_watch_reads_whatever_quality_of_service_a_publisher_offers(here: Netw
             return names | {early} <= texts
 
         until("all have come", all_have_come, PATIENCE)
-    assert {each.decode() for each in [*texts] if each not in names} <= {
-        f"early {name.decode()}" for name in names if b"TRANSIENT" in name
-    }
     assert set(listener.codes) <= {Code.SEVERAL_PUBLISHERS, Code.PUBLISHER_GONE}
     assert Code.SEVERAL_PUBLISHERS in listener.codes
