@@ -138,7 +138,7 @@ def record(
             given, what the scenario says.
         progress: called once for every simulated second, with the seconds so far.
         versions: more to say in the log of what made it.
-        agent: decides instead of `decision`; the log has what it tells.
+        agent: decides instead of `decision`; the log has what it publishes.
 
     Raises:
         OSError: `out` cannot be written. Whatever is raised, no half file stays behind.

@@ -41,8 +41,8 @@ fretc.report.model  fretc.report.pictures  fretc.report.set_analysis
 fretc.report.sections  fretc.report.front
 fretc.report.across  fretc.report.page  fretc.report.forms  fretc.report  fretc.trends
 simulation.world  simulation.nodes  simulation
-fretc.play  fretc.terminal  fretc.campaigns  fretc.testing.log_synthesis
-fretc.rosbridge  fretc.watch.sources  fretc.watch.zenoh  fretc.watch  fretc.watch.publishing
+fretc.play  fretc.terminal  fretc.rosbridge  fretc.campaigns  fretc.testing.log_synthesis
+fretc.watch.sources  fretc.watch.zenoh  fretc.watch  fretc.watch.publishing
 fretc.api  fretc.commands  fretc
 """.split()
 ROOMS = {package.partition(".")[0] for package in ORDER}

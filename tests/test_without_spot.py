@@ -18,6 +18,7 @@ pytestmark = pytest.mark.slow
 ROOT = Path(__file__).parent.parent
 REMEDY = "install Spot: `pip install spottl`"
 NEEDED = {
+    ("compile", "requirements/r1.fret", "-o", "build", "--emit", "agent-runtime"): 2,
     ("compile", "requirements/r1.fret", "-o", "build", "--emit", "ajpf-bundle"): 2,
     ("verify", "requirements/r1.fret", "--monitor", "--layer", "loop"): 3,
     ("verify", "requirements/r1.fret", "--monitor", "--layer", "agent"): 3,

@@ -184,6 +184,7 @@ LEAST: Mapping[str, Table] = {
     "assume": {"stands": "stopped", "latency": "1 s", "braking": "1 s"},
     "map": {"x": "/at.x", "y": "/at.y"},
     "run": {},
+    "action.NAME": {"topic": "/s", "type": "std_msgs/Bool", "message": {}},
     "hazards.toml": {"title": "t"},
     "waivers.toml": {
         "verdict": "vacuous", "reason": "r", "by": "b", "role": "r",

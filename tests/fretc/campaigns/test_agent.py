@@ -47,6 +47,15 @@ def messages(path: Path, *topics: str) -> list[tuple[str, float, Any]]:
         ]
 
 
+def audited(fretc: Fretc, log: Path) -> dict[str, str]:
+    """The verdict of each requirement of a mission."""
+    folder = str(Path(__file__).parents[3] / "requirements/mission")
+    evidence = log.with_suffix(".json")
+    fretc("audit", str(log), "--requirements", folder, "-o", str(evidence))
+    results = json.loads(evidence.read_text(encoding="utf-8"))["results"]
+    return {each["requirement"]: each["verdict"] for each in results}
+
+
 @pytest.mark.slow
 def test_without_mcapl_no_mission_begins(fretc: Fretc, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("AJPF_HOME", raising=False)
@@ -94,14 +103,7 @@ def test_a_whole_mission_ends_as_with_the_monitor(
         run = mission(tmp_path / "agent.mcap", scenario, None, link)
     monitored = mission(tmp_path / "monitor.mcap", scenario, None, safety_function(0.05))
     assert (run.goals_reached, run.contacts) == (monitored.goals_reached, monitored.contacts)
-    verdicts = []
-    for name in ("agent", "monitor"):
-        audit = fretc(
-            *("audit", str(tmp_path / f"{name}.mcap"), "--format", "json"),
-            *("--requirements", str(Path(__file__).parents[3] / "requirements/mission")),
-        )
-        results = json.loads(audit.out)["results"]
-        verdicts.append({each["requirement"]: each["verdict"] for each in results})
+    verdicts = [audited(fretc, tmp_path / f"{name}.mcap") for name in ("agent", "monitor")]
     assert verdicts[0] == verdicts[1]
     assert {*verdicts[0].values()} == {"satisfied"}
 
@@ -182,10 +184,6 @@ def test_verdicts_with_an_agent_are_those_that_the_scenario_states(
     scenario = load(name)
     with agent(scenario.safety.threshold, TYPES) as link:
         mission(tmp_path / "a.mcap", scenario, None, link)
-    audit = fretc(
-        *("audit", str(tmp_path / "a.mcap"), "--format", "json"),
-        *("--requirements", str(Path(__file__).parents[3] / "requirements/mission")),
-    )
-    verdicts = {r["requirement"]: r["verdict"] for r in json.loads(audit.out)["results"]}
+    verdicts = audited(fretc, tmp_path / "a.mcap")
     stated = scenario.expect.verdicts
     assert {id: verdicts[id] for id in stated} == stated
