@@ -78,6 +78,8 @@ LINES: tuple[tuple[str, ...], ...] = (
     ("check", "--requirements", "parents"),
     ("audit", "protobuf.mcap", *SMALL),
     ("audit", "idl.mcap", *SMALL),
+    ("audit", "flight.ulg", *SMALL),
+    ("audit", "table.feather", *SMALL),
 )
 """The first of a command is run with each choice of each of its options, too."""
 LONGEST = 600
@@ -185,6 +187,8 @@ def prepare(checkout: Path) -> None:
     for name in ("requirements", "traces"):
         shutil.copytree(checkout / name, name)
     Path("run.bag").write_bytes(b"#ROSBAG V2.0\n")
+    Path("flight.ulg").write_bytes(b"ULog\x01\x12\x35")
+    Path("table.feather").write_bytes(b"ARROW1\0\0")
     Path("key").write_text("")
     Path("fret.json").write_text("[]")
     for name in ("parents", "small"):
