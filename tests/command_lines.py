@@ -111,6 +111,7 @@ CHEAP: Mapping[str, Sequence[str]] = {
 """Given wherever a command has the parameter: no test waits for a proof."""
 ELSEWHERE = {
     ("watch", "publish"): "opens a server, or needs a robot",
+    ("report", "opens"): "starts a browser",
     ("watch", "follow"): "waits for what is still to come",
     ("simulate", ""): "simulates a mission of its own, and reads no project",
     ("completion", ""): "prints a script for a shell",
