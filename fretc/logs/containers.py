@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping
+from functools import partial
 from pathlib import PurePath
 
 from fretc.logs import log_diagnostics
@@ -61,9 +62,11 @@ def _read(
         return diagnostic("empty_log", span)
     if integrity is not Integrity.INDEX:
         log.begin()
-    for magic, read in CONTAINERS.items():
+    if start.startswith(MAGIC):
+        return _mcap(log, sink, integrity, span, wanted)
+    for magic, read in _WHOLE.items():
         if start.startswith(magic):
-            return read(log, start, sink, integrity, span, wanted)
+            return read(log, sink, span)
     suffix = PurePath(span.source.name).suffix.lower()
     if suffix in TEXT_TABLES:
         log.stream.seek(0)
@@ -71,17 +74,10 @@ def _read(
     return log_diagnostics.not_a_log(start, span)
 
 
-def _bag(
-    log: OpenLog,
-    start: bytes,
-    sink: Sink,
-    integrity: Integrity,
-    span: Span,
-    wanted: Collection[str],
-) -> FileContents | Diagnostic:
+def _bag(magic: bytes, log: OpenLog, sink: Sink, span: Span) -> FileContents | Diagnostic:
     if log.file is None or log.same is None:
         return diagnostic("bag_of_no_file", span)
-    contents = bags.read(log.file, log.same, start, sink, span)
+    contents = bags.read(log.file, log.same, magic, sink, span)
     if isinstance(contents, Diagnostic):
         return contents
     damages = (*contents.damages, *_reindexed(log.file, contents.span))
@@ -99,35 +95,8 @@ def _reindexed(file: str, span: Gap | None) -> Iterator[tuple[Damage, Gap | None
         yield Damage(NOWHERE, what, code=Code.REINDEXED), (span[1], span[1])
 
 
-def _ulog(
-    log: OpenLog,
-    start: bytes,
-    sink: Sink,
-    integrity: Integrity,
-    span: Span,
-    wanted: Collection[str],
-) -> FileContents | Diagnostic:
-    return ulog.read(log, sink, span)
-
-
-def _arrow(
-    log: OpenLog,
-    start: bytes,
-    sink: Sink,
-    integrity: Integrity,
-    span: Span,
-    wanted: Collection[str],
-) -> FileContents | Diagnostic:
-    return tables.read_arrow(log, sink, span)
-
-
 def _mcap(
-    log: OpenLog,
-    start: bytes,
-    sink: Sink,
-    integrity: Integrity,
-    span: Span,
-    wanted: Collection[str],
+    log: OpenLog, sink: Sink, integrity: Integrity, span: Span, wanted: Collection[str]
 ) -> FileContents | Diagnostic:
     held = contents(log.stream, log.size, sink, integrity, wanted)
     if held.span is not None:
@@ -145,15 +114,11 @@ def _mcap(
 
 _BEGINNING = 16
 """The first bytes of a file; enough to recognize every format."""
-Container = Callable[
-    [OpenLog, bytes, Sink, Integrity, Span, Collection[str]], FileContents | Diagnostic
-]
-"""The reader of one container format; its last argument is the first bytes of the file."""
-CONTAINERS: Mapping[bytes, Container] = {
-    MAGIC: _mcap,
-    bags.BAG: _bag,
-    bags.DB3: _bag,
-    ulog.MAGIC: _ulog,
-    PARQUET: _arrow,
-    ARROW: _arrow,
+_WHOLE: Mapping[bytes, Callable[[OpenLog, Sink, Span], FileContents | Diagnostic]] = {
+    bags.BAG: partial(_bag, bags.BAG),
+    bags.DB3: partial(_bag, bags.DB3),
+    ulog.MAGIC: ulog.read,
+    PARQUET: tables.read_arrow,
+    ARROW: tables.read_arrow,
 }
+"""The first bytes and the reader of each format that is always read in full."""

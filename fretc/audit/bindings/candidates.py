@@ -55,7 +55,7 @@ _WANTED = {"cmd", "command", "desired", "goal", "reference", "setpoint", "target
 _MOST = 10
 
 
-class Likeness(IntEnum):
+class Similarity(IntEnum):
     """How a field is like a name; the first is the best."""
 
     SAME_NAME = 0
@@ -72,7 +72,7 @@ class Candidate:
 
     signal: DraftedSignal
     """The signal of the name, read from this field."""
-    likeness: Likeness
+    similarity: Similarity
     is_unit_assumed: bool
     """Whether nothing states the unit, and it is the base unit of the sentence's dimension."""
     range: str = ""
@@ -101,29 +101,29 @@ def candidates(overview: Overview, needs: Iterable[Need]) -> tuple[Candidates, .
 
 
 def _decided(need: Need, fits: Sequence[Candidate]) -> Candidates:
-    likely = [each for each in fits if each.likeness is not Likeness.PARTIAL]
-    same = [each for each in likely if each.likeness is Likeness.SAME_NAME]
+    likely = [each for each in fits if each.similarity is not Similarity.PARTIAL]
+    same = [each for each in likely if each.similarity is Similarity.SAME_NAME]
     chosen = same if len(same) == 1 else likely if len(likely) == 1 else [None]
     others = tuple(each for each in fits if each is not chosen[0])[:_MOST]
     return Candidates(need, chosen[0], others)
 
 
 def _order(candidate: Candidate) -> tuple[int, int, str]:
-    return candidate.likeness, len(candidate.signal.path), candidate.signal.path
+    return candidate.similarity, len(candidate.signal.path), candidate.signal.path
 
 
 def _fitting(overview: Overview, need: Need) -> Iterator[Candidate]:
     for name, topic in overview.recording.topics.items():
         leaves = overview.leaves.get(name) or {}
         for field, values in bindable_fields(overview, name).items():
-            kind, likeness = leaves[field].kind, _likeness(need.name, name, field)
-            if not topic.count or likeness is None or path(f"{name}.{field}") is None:
+            kind, similarity = leaves[field].kind, _similarity(need.name, name, field)
+            if not topic.count or similarity is None or path(f"{name}.{field}") is None:
                 continue
             signal = _signal(need, topic, field, values)
             assumed = _assumed_unit(need, signal, kind)
             if assumed is not None and _fits(need, kind, values):
                 full = replace(signal, quantity=replace(signal.quantity, unit=assumed))
-                yield Candidate(full, likeness, assumed != signal.quantity.unit)
+                yield Candidate(full, similarity, assumed != signal.quantity.unit)
 
 
 def _signal(need: Need, topic: Topic, field: str, values: tuple[str, ...]) -> DraftedSignal:
@@ -158,7 +158,7 @@ def _assumed_unit(need: Need, signal: DraftedSignal, kind: FieldKind) -> str | N
 # Words
 
 
-def _likeness(name: str, topic: str, field: str) -> Likeness | None:
+def _similarity(name: str, topic: str, field: str) -> Similarity | None:
     path = [*topic.split("/"), *re.split(r"[.\[\]:]+", field.removesuffix("[:]"))]
     if path[-1] in ("data", "value"):  # the topic is the name
         path.pop()
@@ -166,16 +166,16 @@ def _likeness(name: str, topic: str, field: str) -> Likeness | None:
     wanted, last = _phrase(name), parts[-1] if parts else ()
     meant = _WANTED & {*_joined(parts)} <= {*wanted}
     if meant and name.lower() == path[-1].lower():
-        return Likeness.SAME_NAME
+        return Similarity.SAME_NAME
     bare = [*parts[:-1], last[:-1]] if len(last) > 1 and last[-1] in _SUFFIXES else parts
     ends = {_joined(each[start:]) for each in (parts, bare) for start in range(len(each))}
     if meant and _without_verb(wanted) in ends:
-        return Likeness.END_OF_PATH
+        return Similarity.END_OF_PATH
     if meant and _synonyms(wanted) & ends:
-        return Likeness.SYNONYM
+        return Similarity.SYNONYM
     inner = {each[-1][start:] for each in (parts, bare) if each for start in range(len(each[-1]))}
     alike = {end for each in (wanted, wanted[-1:]) for end in (each, *_synonyms(each))}
-    return Likeness.PARTIAL if alike & (ends | inner) else None
+    return Similarity.PARTIAL if alike & (ends | inner) else None
 
 
 def _joined(parts: Sequence[Phrase]) -> Phrase:

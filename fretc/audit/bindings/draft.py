@@ -11,7 +11,7 @@ from math import gcd
 
 from compiler.files.build_id import __version__
 from compiler.files.templating import render
-from fretc.audit.bindings.candidates import Candidate, Candidates, Likeness, Need, candidates
+from fretc.audit.bindings.candidates import Candidate, Candidates, Need, Similarity, candidates
 from fretc.audit.bindings.draft_signals import (
     DraftedSignal,
     bindable_fields,
@@ -90,7 +90,7 @@ def addition(
     fields = {each.need.name: each for each in candidates(overview, needs)}
     for need in needs:
         if need.name in known:
-            candidate = Candidate(known[need.name], Likeness.SAME_NAME, is_unit_assumed=False)
+            candidate = Candidate(known[need.name], Similarity.SAME_NAME, is_unit_assumed=False)
             fields[need.name] = Candidates(need, candidate, ())
     chosen = [each.chosen.signal for each in fields.values() if each.chosen]
     return render(

@@ -14,7 +14,7 @@ import contextlib
 import io
 import struct
 from collections.abc import Iterator, Mapping
-from typing import Any, BinaryIO
+from typing import Any
 
 import numpy as np
 from mcap.records import Channel, Schema
@@ -66,17 +66,19 @@ def read(log: OpenLog, sink: Sink, span: Span) -> FileContents | Diagnostic:
     except ModuleNotFoundError:
         return missing_extra("a ULog cannot be read: that needs", ["pyulog"], "ulog", span)
     log.stream.seek(0)
-    content = io.BytesIO(log.stream.read())
+    content = log.stream.read()
     try:
         with contextlib.redirect_stdout(io.StringIO()):  # pyulog prints warnings
-            parsed = ULog(_Unclosed(content), None, disable_str_exceptions=True)
+            parsed = ULog(io.BytesIO(content), None, disable_str_exceptions=True)
         topics = [_topic(i, each, parsed) for i, each in enumerate(parsed.data_list, 1)]
     except Exception as error:  # the reader trusts each byte, and each may be wrong
         reason = str(error).partition("\n")[0][:200] or type(error).__name__
         return diagnostic("bad_ulog", span, why=reason)
     times = np.sort(np.concatenate([each.times for each in topics] or [np.zeros(0, np.int64)]))
-    if not times.size or int(times[-1]) >= LATEST:
-        return diagnostic("empty_log", span) if not times.size else _late(span)
+    if not times.size:
+        return diagnostic("empty_log", span)
+    if int(times[-1]) >= LATEST:
+        return diagnostic("bad_ulog", span, why="a message has an impossible time")
     for topic in topics:
         sink.declare(topic.stream)
         topic.pass_to(sink)
@@ -84,17 +86,6 @@ def read(log: OpenLog, sink: Sink, span: Span) -> FileContents | Diagnostic:
     damages = (*_dropouts(parsed, times), *_damages(parsed, content, whole))
     note = diagnostic("limits_of_ulog", span)
     return FileContents(log.sha256(), log.size, whole, damages, (note,))
-
-
-class _Unclosed(io.BytesIO):
-    """The bytes of a file that its reader cannot close."""
-
-    def __init__(self, content: BinaryIO) -> None:
-        super().__init__(content.read())
-        content.seek(0)
-
-    def close(self) -> None:
-        """Stay open."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,14 +179,14 @@ def _dropouts(parsed: Any, times: NDArray[np.int64]) -> Iterator[tuple[Damage, G
         yield Damage(NOWHERE, what), (start, max(start, end))
 
 
-def _damages(parsed: Any, content: BinaryIO, whole: Gap) -> Iterator[tuple[Damage, Gap]]:
+def _damages(parsed: Any, content: bytes, whole: Gap) -> Iterator[tuple[Damage, Gap]]:
     """What the file itself has lost."""
     if parsed.file_corruption:
         yield Damage(NOWHERE, "records of the file are damaged"), whole
     elif parsed.has_data_appended:
         what = "data was appended to it after a crash"
         yield Damage(NOWHERE, what, code=Code.TRUNCATED_LOG), (whole[1], whole[1])
-    elif _is_cut(content.read()):
+    elif _is_cut(content):
         what = "its last record is not whole"
         yield Damage(NOWHERE, what, code=Code.TRUNCATED_LOG), (whole[1], whole[1])
 
@@ -207,7 +198,3 @@ def _is_cut(content: bytes) -> bool:
         size, _ = _RECORD.unpack_from(content, at)
         at += _RECORD.size + size
     return at != len(content)
-
-
-def _late(span: Span) -> Diagnostic:
-    return diagnostic("bad_ulog", span, why="a message has an impossible time")

@@ -21,9 +21,12 @@ _NAMES = (
     "log_time", "timestamp", "time_stamp", "time", "stamp", "datetime", "date_time", "t",
 )  # fmt: skip
 """Names of time columns without their unit, the likeliest first."""
-_UNITS = {"s": 10**9, "sec": 10**9, "secs": 10**9, "seconds": 10**9, "ms": 10**6, "msec": 10**6,
-    "us": 10**3, "usec": 10**3, "ns": 1, "nsec": 1, "nanoseconds": 1,
-    "milliseconds": 10**6, "microseconds": 10**3}  # fmt: skip
+_UNITS = {
+    "s": "s", "sec": "s", "secs": "s", "seconds": "s", "ms": "ms", "msec": "ms",
+    "milliseconds": "ms", "us": "us", "usec": "us", "microseconds": "us", "ns": "ns", "nsec": "ns",
+    "nanoseconds": "ns",
+}  # fmt: skip
+"""Last words of names of time columns, each with the symbol of the unit."""
 _EPOCH = (Decimal(978_307_200), Decimal(4_102_444_800))
 """Seconds from 1970 to the years 2001 and 2100."""
 UNITS = {
@@ -90,10 +93,9 @@ def time_column(
 def _parsed(column: str) -> list[tuple[int, str]]:
     """The rank and the unit of a name of a time column; empty: it is none."""
     words = [word.lower() for word in re.findall(r"[A-Za-z]+", column)]
-    unit = _UNITS.get(words[-1]) if len(words) > 1 else None
+    unit = _UNITS.get(words[-1], "") if len(words) > 1 else ""
     name = "_".join(words[:-1] if unit else words)
-    symbol = next((s for s, size in _SIZES.items() if size == unit), "")
-    return [(_NAMES.index(name), symbol)] if name in _NAMES else []
+    return [(_NAMES.index(name), unit)] if name in _NAMES else []
 
 
 def _unit_of(text: str) -> str:

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import subprocess
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import IO
 
 from fretc.verification.engines.programs import MEMORY, STARTED, run
 from fretish.classes.frozen import dataclass
+from fretish.system.resources import exceeded_time
 
 _SECONDS = 60.0
+_ENDING = 10.0
+"""Seconds in which a process must end after it has closed its output."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,6 +29,63 @@ class Binary:
 
 class ToolError(Exception):
     """The text cannot be compiled or run; the message gives the reason."""
+
+
+@contextmanager
+def conversation(
+    name: str,
+    command: Sequence[str],
+    folder: Path,
+    environment: Mapping[str, str],
+    errors: IO[bytes],
+) -> Iterator[subprocess.Popen[bytes]]:
+    """A program with pipes to its input and output, until the end of the context.
+
+    Args:
+        name: the program, in messages.
+        command: the program and its arguments.
+        folder: its working directory.
+        environment: its environment variables.
+        errors: the file that receives its error output.
+
+    Raises:
+        ToolError: the program cannot be started.
+    """
+    try:
+        process = subprocess.Popen(
+            command,
+            cwd=folder,
+            env=environment,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=errors,
+        )
+    except OSError as error:
+        raise ToolError(f"{name} cannot be started: {error}") from None
+    with process:
+        try:
+            yield process
+        finally:
+            process.kill()
+
+
+def no_answer(
+    name: str, process: subprocess.Popen[bytes], errors: Path, marks: Sequence[str]
+) -> ToolError:
+    """The reason why a program has not answered.
+
+    Args:
+        name: the program, in messages.
+        process: the program.
+        errors: the file with its error output.
+        marks: words, one of which is in each line that states a reason.
+    """
+    with suppress(subprocess.TimeoutExpired):
+        if exceeded_time(process.wait(_ENDING)):
+            return ToolError(f"out of time: {name} took as many CPU seconds")
+    text = errors.read_text(encoding="utf-8", errors="replace")
+    lines = (line for line in text.splitlines() if any(mark in line for mark in marks))
+    return ToolError(f"{name} does not run it: {next(lines, 'it gives no reason')}")
 
 
 def compiled(

@@ -10,22 +10,19 @@ import os
 import struct
 import subprocess
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager, suppress
 from itertools import accumulate, pairwise
 from pathlib import Path
 from typing import Any
 
 from fretc.verification.compiled.memory import OUTCOME, MonitorMemory
 from fretc.verification.compiled.plan import RequirementPosition
-from fretc.verification.compiled.tools import ToolError
+from fretc.verification.compiled.tools import conversation, no_answer
 from fretish.classes.frozen import dataclass
-from fretish.system.resources import exceeded_time
 
 EXPLORER = "FretcExplorer"
 """The class that steps a monitor."""
 FLAGS = ("-XX:+UseSerialGC", "-XX:-UsePerfData", "-Xmx512m", "-cp", "classes")
-_ENDING = 10.0
-"""Seconds in which a process must end after it has closed its output."""
 EXPLORER_TEXT = """
 import java.io.BufferedInputStream;
 import java.io.BufferedOutputStream;
@@ -222,27 +219,12 @@ class JavaClass:
             yield JavaMemory(self, plan, _Conversation(process, complaints))
 
 
-@contextmanager
-def _started(java: JavaClass, errors: Any) -> Iterator[subprocess.Popen[bytes]]:
+def _started(java: JavaClass, errors: Any) -> AbstractContextManager[subprocess.Popen[bytes]]:
     """Start the virtual machine without options of the user, which could load agents."""
     plain = {name: value for name, value in os.environ.items() if not name.endswith("JAVA_OPTIONS")}
     plain.pop("JAVA_TOOL_OPTIONS", None)
-    try:
-        process = subprocess.Popen(
-            [java.program, *FLAGS, EXPLORER, java.name],
-            cwd=java.folder,
-            env=plain,
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=errors,
-        )
-    except OSError as error:
-        raise ToolError(f"`java` cannot be started: {error}") from None
-    with process:
-        try:
-            yield process
-        finally:
-            process.kill()
+    command = [java.program, *FLAGS, EXPLORER, java.name]
+    return conversation("`java`", command, java.folder, plain, errors)
 
 
 class _Conversation:
@@ -270,12 +252,7 @@ class _Conversation:
         answer = self._output.read(size)
         if len(answer) == size:
             return answer
-        with suppress(subprocess.TimeoutExpired):
-            if exceeded_time(self._process.wait(_ENDING)):
-                raise ToolError("out of time: `java` took as many CPU seconds")
-        text = self._errors.read_text(encoding="utf-8", errors="replace")
-        lines = (each for each in text.splitlines() if "Exception" in each or "Error" in each)
-        raise ToolError(f"`java` does not run it: {next(lines, 'it gives no reason')}")
+        raise no_answer("`java`", self._process, self._errors, ("Exception", "Error"))
 
 
 class JavaMemory(MonitorMemory):

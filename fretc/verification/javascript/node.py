@@ -12,7 +12,7 @@ import json
 import os
 import subprocess
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager, suppress
 from dataclasses import field
 from itertools import product
 from pathlib import Path
@@ -21,16 +21,13 @@ from typing import Any, NamedTuple
 from compiler.formalization.letters import Valuation
 from fretc.verification.compiled.plan import RequirementPosition
 from fretc.verification.compiled.readings import ApproximationReading, judged
-from fretc.verification.compiled.tools import ToolError
+from fretc.verification.compiled.tools import conversation, no_answer
 from fretc.verification.monitor.approximations import Letter
 from fretc.verification.monitor.equivalence import Judgement
 from fretish.classes.frozen import dataclass
-from fretish.system.resources import exceeded_time
 from monitors.kernel.verdicts import Truth
 
 FLAGS = ("--disallow-code-generation-from-strings",)
-_ENDING = 10.0
-"""Seconds in which a process must end after it has closed its output."""
 _TRUTHS: tuple[Truth, ...] = (False, True, None)
 _EXPLORER = """
 import { createInterface } from "node:readline";
@@ -170,26 +167,11 @@ def placed(text: str, folder: Path) -> None:
     (folder / "explorer.mjs").write_text(_EXPLORER, encoding="utf-8")
 
 
-@contextmanager
-def _started(module: Module, errors: Any) -> Iterator[subprocess.Popen[bytes]]:
+def _started(module: Module, errors: Any) -> AbstractContextManager[subprocess.Popen[bytes]]:
     """Start Node without `NODE_OPTIONS` of the user, which could load modules."""
     plain = {name: value for name, value in os.environ.items() if not name.startswith("NODE_")}
-    try:
-        process = subprocess.Popen(
-            [module.program, *FLAGS, "explorer.mjs"],
-            cwd=module.folder,
-            env=plain,
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=errors,
-        )
-    except OSError as error:
-        raise ToolError(f"Node cannot be started: {error}") from None
-    with process:
-        try:
-            yield process
-        finally:
-            process.kill()
+    command = [module.program, *FLAGS, "explorer.mjs"]
+    return conversation("Node", command, module.folder, plain, errors)
 
 
 class ModuleRequirement:
@@ -255,12 +237,7 @@ class ModuleRequirement:
             self._process.stdin.flush()
         line = self._process.stdout.readline()
         if not line.endswith(b"\n"):
-            with suppress(subprocess.TimeoutExpired):
-                if exceeded_time(self._process.wait(_ENDING)):
-                    raise ToolError("out of time: Node took as many CPU seconds")
-            text = self._errors.read_text(encoding="utf-8", errors="replace")
-            lines = (each for each in text.splitlines() if "Error" in each or "FATAL" in each)
-            raise ToolError(f"Node does not run it: {next(lines, 'it gives no reason')}")
+            raise no_answer("Node", self._process, self._errors, ("Error", "FATAL"))
         return json.loads(line)
 
 

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from compiler.project.folder import load
-from fretc.audit.bindings.candidates import Candidates, Likeness, candidates
+from fretc.audit.bindings.candidates import Candidates, Similarity, candidates
 from fretc.audit.bindings.draft import draft
 from fretc.audit.bindings.needs import (
     MissingProposition,
@@ -59,29 +59,29 @@ def truth(name: str) -> MissingProposition:
     return MissingProposition(name, ("R1",), "input", "any")
 
 
-LIKE: dict[str, tuple[dict[str, Any], str, Likeness]] = {
-    "battery": ({"battery": 1.0}, "battery", Likeness.SAME_NAME),
-    "Battery": ({"battery": 1.0}, "battery", Likeness.SAME_NAME),
-    "batteryLevel": ({"battery_level": 1.0}, "battery_level", Likeness.END_OF_PATH),
-    "battery_level": ({"battery": {"level": 1.0}}, "battery.level", Likeness.END_OF_PATH),
-    "state_charge": ({"charges": 1.0}, "charges", Likeness.END_OF_PATH),
-    "altitude": ({"altitude_mm": 1.0}, "altitude_mm", Likeness.END_OF_PATH),
-    "temperature": ({"temp": 1.0}, "temp", Likeness.SYNONYM),
-    "speed": ({"twist": {"linear": {"x": 1.0}}}, "twist.linear.x", Likeness.SYNONYM),
-    "height": ({"pose": {"position": {"z": 1.0}}}, "pose.position.z", Likeness.SYNONYM),
-    "velocity": ({"desired_velocity": 1.0}, "desired_velocity", Likeness.PARTIAL),
-    "drone_speed": ({"v": {"linear": {"x": 1.0}}}, "v.linear.x", Likeness.PARTIAL),
+LIKE: dict[str, tuple[dict[str, Any], str, Similarity]] = {
+    "battery": ({"battery": 1.0}, "battery", Similarity.SAME_NAME),
+    "Battery": ({"battery": 1.0}, "battery", Similarity.SAME_NAME),
+    "batteryLevel": ({"battery_level": 1.0}, "battery_level", Similarity.END_OF_PATH),
+    "battery_level": ({"battery": {"level": 1.0}}, "battery.level", Similarity.END_OF_PATH),
+    "state_charge": ({"charges": 1.0}, "charges", Similarity.END_OF_PATH),
+    "altitude": ({"altitude_mm": 1.0}, "altitude_mm", Similarity.END_OF_PATH),
+    "temperature": ({"temp": 1.0}, "temp", Similarity.SYNONYM),
+    "speed": ({"twist": {"linear": {"x": 1.0}}}, "twist.linear.x", Similarity.SYNONYM),
+    "height": ({"pose": {"position": {"z": 1.0}}}, "pose.position.z", Similarity.SYNONYM),
+    "velocity": ({"desired_velocity": 1.0}, "desired_velocity", Similarity.PARTIAL),
+    "drone_speed": ({"v": {"linear": {"x": 1.0}}}, "v.linear.x", Similarity.PARTIAL),
 }
 
 
 @pytest.mark.parametrize("name", LIKE)
 def test_a_name_and_a_field_are_alike_by_their_words(tmp_path: Path, name: str) -> None:
-    message, field, likeness = LIKE[name]
+    message, field, similarity = LIKE[name]
     found = of(recorded(tmp_path / "a.mcap", message), number(name))
     (only,) = [each for each in (found.chosen, *found.others) if each]
     assert only.signal.path == f"/drone/state.{field}"
-    assert only.likeness is likeness
-    assert (found.chosen is None) == (likeness is Likeness.PARTIAL)
+    assert only.similarity is similarity
+    assert (found.chosen is None) == (similarity is Similarity.PARTIAL)
 
 
 @pytest.mark.parametrize("name", ["volume", "x_speeds", "at", "tery", "linear_x_speed"])
@@ -116,7 +116,7 @@ def test_a_command_is_no_measurement(tmp_path: Path) -> None:
     log = recorded(tmp_path / "a.mcap", {"linear": {"x": 1.0}, "speed": 1.0}, topic="/cmd_vel")
     found = of(log, number("speed", "m/s"))
     assert found.chosen is None
-    assert {each.likeness for each in found.others} == {Likeness.PARTIAL}
+    assert {each.similarity for each in found.others} == {Similarity.PARTIAL}
     asked = of(log, number("cmd_vel_linear_x", "m/s")).chosen
     assert asked is not None
     assert asked.signal.path == "/cmd_vel.linear.x"
