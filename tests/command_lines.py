@@ -17,6 +17,7 @@ VALUES: Mapping[str, Sequence[str]] = {
     "bindings": ("requirements/bindings.toml",),
     "hazards": ("requirements/hazards.toml",),
     "folder": ("requirements",),
+    "pack": ("nav2",),
     "what": ("{id}", "requirements/", "F306"),
     "ids": ("{id}",),
     "show": ("{id}",),

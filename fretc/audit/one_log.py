@@ -329,7 +329,7 @@ def _reason(evidence: RunResult, recording: Recording, declarations: Declaration
         case kernel.VIOLATED:
             return _broken(evidence)
         case kernel.NO_DATA:
-            return _unknown(evidence, recording)
+            return _unknown(evidence, recording, declarations)
         case kernel.INCONCLUSIVE if evidence.outcome.verdict in WITHOUT_VIOLATION:
             return "what came after the last whole tick leaves it open"
         case kernel.INCONCLUSIVE:
@@ -358,8 +358,13 @@ def _more(count: int) -> str:
     return f", and at {_times(count - 1, 'other time')}" if count > 1 else ""
 
 
-def _unknown(evidence: RunResult, recording: Recording) -> str:
-    errors = [finding.message for finding in recording.findings if finding.is_error]
+def _unknown(evidence: RunResult, recording: Recording, declarations: Declarations) -> str:
+    of_others = {s.span for s in declarations.signals.values() if s.name not in evidence.units}
+    errors = [
+        finding.message
+        for finding in recording.findings
+        if finding.is_error and (finding.span is None or finding.span not in of_others)
+    ]
     if errors:
         return errors[0]
     if not recording.intact:
