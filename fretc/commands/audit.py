@@ -77,7 +77,7 @@ _AUDIT = {
     "-v",
     "--verbose",
     is_flag=True,
-    help="List every result. Without it, many runs are shown as a table of symbols.",
+    help="List every result and note. Without it, many runs are shown as a table of symbols.",
 )
 @click.option(
     "--integrity",

@@ -312,3 +312,18 @@ def test_a_pack_with_an_error_is_refused_whole(fretc: Fretc) -> None:
 def test_a_pack_and_a_log_are_refused(fretc: Fretc) -> None:
     run = fretc("init", "--pack", "nav2", "--from", "run.mcap")
     assert (run.status, run.err.split(" ")[0]) == (2, "F907")
+
+
+@pytest.mark.slow
+def test_of_many_propositions_that_never_change_a_few_are_told_and_the_others_counted(
+    fretc: Fretc,
+) -> None:
+    still = dict.fromkeys(PX4.courses, steps(0)) | {"mode": steps(2), "battery": steps(0.5)}
+    fretc("init", "--pack", "px4")
+    record(Path("still.mcap"), PX4, still, 5)
+    short, whole = (fretc("audit", "still.mcap", *option).err for option in ((), ("-v",)))
+    count = whole.count("F314 note")
+    assert count > 3
+    assert short.count("F314 note") == 3
+    assert f"\n{count - 3} more propositions never changed (F314): `-v` lists them\n" in short
+    assert "more propositions never changed" not in whole
