@@ -100,7 +100,7 @@ DOORS = {
         "fretc/logs/mcap/walk.py",
         "fretc/logs/messages/decoding.py",
         "fretc/logs/storage/bags.py",
-        "fretc/logs/storage/ulog.py",
+        "fretc/logs/storage/packed_topics.py",
         "fretc/logs/tables/contents.py",
         "fretc/watch/decoding.py",
         "fretc/watch/recording.py",

@@ -180,7 +180,7 @@ def _print_findings(
 
 
 _FEW = 3
-"""Propositions that never changed, of which each is told in full."""
+"""Propositions that never changed, of which each is printed in full."""
 
 
 # Before the audit -------------------------------------------------------------------------------

@@ -36,8 +36,8 @@ _CHECK = "compare topics, limits and times with your robot's"
 @click.option(
     "--pack",
     metavar="PACK",
-    help="Requirements, bindings and hazards of a kind of robot: `lerobot`, `nav2`, `px4`, "
-    "`turtlebot4`, or a folder of your own.",
+    help="Requirements, bindings and hazards of a kind of robot: `ardupilot`, `lerobot`, `nav2`, "
+    "`px4`, `turtlebot4`, or a folder of your own.",
 )
 def init(folder: str, log: str | None, pack: str | None) -> None:
     """Create a project: requirements, their bindings and hazards.

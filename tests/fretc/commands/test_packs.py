@@ -234,7 +234,54 @@ LEROBOT = Case(
         "ARM-5": {"gripper_goal": steps(50.0, (4, 10.0))},
     },
 )
-CASES = {"lerobot": LEROBOT, "nav2": NAV2, "px4": PX4, "turtlebot4": TURTLEBOT4}
+ARDUPILOT = Case(
+    [
+        Topic("/MODE", "dataflash/MODE", 1000, lambda at: {"Mode": at["mode"]}),
+        Topic("/CTUN", "dataflash/CTUN", 100, lambda at: {"Alt": at["altitude"]}),
+        Topic(
+            "/ATT",
+            "dataflash/ATT",
+            50,
+            lambda at: {
+                "Roll": at["roll"],
+                "Pitch": at["pitch"],
+                "DesRoll": at["roll_demand"],
+                "DesPitch": 0.0,
+            },
+        ),
+        Topic("/VIBE", "dataflash/VIBE", 100, lambda at: {"VibeZ": at["vibration"]}),
+        Topic("/GPS", "dataflash/GPS", 200, lambda at: {"NSats": at["satellites"]}),
+        Topic("/BAT", "dataflash/BAT", 100, lambda at: {"Volt": at["voltage"]}),
+    ],
+    {
+        "mode": steps(5, (22, 6)),
+        "altitude": steps(0.0, (1, 30.0), (28, 0.0)),
+        "roll": steps(0.0, (3, 30.0), (4, 0.0)),
+        "roll_demand": steps(0.0, (2.8, 30.0), (4, 0.0)),
+        "pitch": steps(5.0),
+        "vibration": steps(12.0),
+        "satellites": steps(11, (6, 5), (7, 9)),
+        "voltage": steps(15.2, (12, 13.9)),
+    },
+    {
+        "AP-1": {
+            "roll": steps(0.0, (3, 51.0), (4, 0.0)),
+            "roll_demand": steps(0, (3, 45.0), (4, 0)),
+        },
+        "AP-2": {"roll": steps(0.0)},
+        "AP-3": {"vibration": steps(12.0, (9, 61.0))},
+        "AP-4": {"satellites": steps(11, (6, 5))},
+        "AP-5": {"mode": steps(5)},
+        "AP-6": {"altitude": steps(0.0, (1, 101.0), (28, 0.0))},
+    },
+)
+CASES = {
+    "ardupilot": ARDUPILOT,
+    "lerobot": LEROBOT,
+    "nav2": NAV2,
+    "px4": PX4,
+    "turtlebot4": TURTLEBOT4,
+}
 
 
 def record(path: Path, case: Case, changes: Mapping[str, Course], length: int) -> None:
@@ -295,7 +342,7 @@ def test_an_unknown_pack_is_refused(fretc: Fretc) -> None:
     assert run.status == 2
     assert run.err == (
         "F901 there is no pack `nav3`\n"
-        "help: name one of lerobot, nav2, px4, turtlebot4, or a folder with `.fret` files\n"
+        f"help: name one of {', '.join(CASES)}, or a folder with `.fret` files\n"
     )
     assert not Path("new").exists()
 
