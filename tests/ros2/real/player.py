@@ -1,11 +1,17 @@
-"""Plays messages by a simulated clock on real ROS 2, and hears what the monitor says.
+"""Plays messages by a simulated clock on real ROS 2, one at a time, and records the answers.
 
-    python player.py FILE RATE READERS
+    python player.py FILE READERS BEFORE AFTER
 
-FILE has on each line a time in nanoseconds, a topic, and a payload in hexadecimal digits. They are
-published as soon as `/scan` and `/odom` have so many readers, RATE times as fast as their times;
-more slowly where the monitor has not kept up. Then each line of standard input is answered by all
-that was heard; after `on` the clock goes on by a second.
+Each line of FILE has a time in nanoseconds, a topic, and a payload in hexadecimal digits. The
+player waits until `/scan` and `/odom` have READERS subscriptions each. It then moves all times and
+stamps, so that the first message comes BEFORE seconds before the present time.
+
+A subscription with `SensorDataQoS` keeps five messages and drops the oldest of them where more come
+before the node takes one. So the player publishes a message only after the node has answered a
+request that followed the message before: the speed is that of the node, and nothing is lost.
+
+When all is played, the clock goes on for AFTER seconds, a heartbeat of the monitor for each step.
+Then one line of JSON is printed: what was published, and what node and interceptor have said.
 
 It runs where rclpy is installed, without fretc.
 """
@@ -13,8 +19,8 @@ It runs where rclpy is installed, without fretc.
 from __future__ import annotations
 
 import json
+import struct
 import sys
-import threading
 import time
 from pathlib import Path
 from typing import Any
@@ -23,122 +29,157 @@ import rclpy  # type: ignore[import-not-found]
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Twist  # type: ignore[import-not-found]
 from lifecycle_msgs.msg import Transition  # type: ignore[import-not-found]
-from lifecycle_msgs.srv import ChangeState  # type: ignore[import-not-found]
+from lifecycle_msgs.srv import ChangeState, GetState  # type: ignore[import-not-found]
 from nav_msgs.msg import Odometry  # type: ignore[import-not-found]
-from rclpy.qos import qos_profile_sensor_data  # type: ignore[import-not-found]
+from rclpy.duration import Duration  # type: ignore[import-not-found]
+from rclpy.executors import SingleThreadedExecutor  # type: ignore[import-not-found]
 from rclpy.time import Time  # type: ignore[import-not-found]
 from rosgraph_msgs.msg import Clock  # type: ignore[import-not-found]
 from sensor_msgs.msg import LaserScan  # type: ignore[import-not-found]
 from std_msgs.msg import Bool, String  # type: ignore[import-not-found]
 
-AHEAD = 3
-"""The most messages of a topic that the monitor has not taken yet: less than its queues hold."""
-AFTERWARDS = 10**8
-"""Simulated nanoseconds from one time to the next when all is played."""
+SECOND = 10**9
+STEP = SECOND // 10
+"""Simulated nanoseconds from one time to the next when all is played: a tick."""
+KEPT = 1000
+"""So many messages are sent again to a subscription that has missed them."""
+AGAIN = 1.0
+"""Seconds after which the first message of a topic is published again."""
+BEATS = 3
+"""The last of so many requests is made after the clock was set: one of them may be under way, and
+another one in the queue."""
+PATIENCE = 60.0
+_STAMP = struct.Struct("<iI")
+_STAMPED = ("/scan", "/odom")
 
 
 class Player:
     """The publishers, and what was heard."""
 
     def __init__(self, node: Any) -> None:
+        self.executor = SingleThreadedExecutor()
+        self.executor.add_node(node)
         self.node = node
+        types = {"/scan": LaserScan, "/odom": Odometry, "/cmd_vel": Twist}
         self.publishers = {
-            "/scan": node.create_publisher(LaserScan, "/scan", qos_profile_sensor_data),
-            "/odom": node.create_publisher(Odometry, "/odom", 1000),
-            "/cmd_vel": node.create_publisher(Twist, "/cmd_vel", 10),
+            topic: node.create_publisher(kind, topic, KEPT) for topic, kind in types.items()
         }
         self.clock = node.create_publisher(Clock, "/clock", 10)
+        self.asked = node.create_client(GetState, "/r1_monitor/get_state")
+        self.sent: list[tuple[int, str, str]] = []
         self.lines: list[Any] = []
         self.values: dict[str, str] = {}
         """Those of the last diagnostic status of the sources."""
         self.wheels: list[float] = []
-        self.sent = dict.fromkeys(self.publishers, 0)
-        self.taken = [dict(self.sent), dict(self.sent)]
-        """What was sent at the last two requests of the monitor."""
-        self.requested = threading.Event()
-        node.create_subscription(Bool, "/gwendolen_control", self.take, 10)
+        self.stops: list[bool] = []
         node.create_subscription(
-            String, "/r1_monitor/verdicts", lambda m: self.lines.append(json.loads(m.data)), 100
+            Bool, "/gwendolen_control", lambda m: self.stops.append(m.data), KEPT
+        )
+        node.create_subscription(
+            String, "/r1_monitor/verdicts", lambda m: self.lines.append(json.loads(m.data)), KEPT
         )
         node.create_subscription(DiagnosticArray, "/diagnostics", self.note, 10)
         node.create_subscription(
-            Twist, "/cmd_vel_filtered", lambda m: self.wheels.append(m.linear.x), 10
+            Twist, "/cmd_vel_filtered", lambda m: self.wheels.append(m.linear.x), KEPT
         )
-
-    def take(self, _: Any) -> None:
-        """The monitor is at work: it has taken what was sent at its request before."""
-        self.taken = [self.taken[-1], dict(self.sent)]
-        self.requested.set()
-
-    def keep_up(self, topic: str) -> None:
-        """Wait for the monitor."""
-        while self.sent[topic] - self.taken[0][topic] >= AHEAD:
-            self.requested.clear()
-            assert self.requested.wait(60), "the monitor is silent"
-        self.sent[topic] += 1
-
-    def has_taken(self, topic: str) -> bool:
-        """Whether the monitor has told that a message of the topic has come."""
-        return int(self.values.get(f"messages of {topic}", 0)) > 0
 
     def note(self, array: Any) -> None:
         for status in array.status:
             if status.name == "r1_monitor: sources":
                 self.values = {each.key: each.value for each in status.values}
 
+    def until(self, holds: Any, seconds: float = PATIENCE) -> bool:
+        """Listen until that holds; whether it does."""
+        end = time.monotonic() + seconds
+        while not holds() and time.monotonic() < end:
+            self.executor.spin_once(timeout_sec=0.05)
+        return bool(holds())
+
+    def answer(self, client: Any, request: Any) -> None:
+        """Wait for the answer of the monitor."""
+        future = client.call_async(request)
+        assert self.until(future.done), "the monitor is silent"
+
     def change(self, transition: int) -> None:
-        """Ask the monitor for a transition until it has made one."""
         client = self.node.create_client(ChangeState, "/r1_monitor/change_state")
-        assert client.wait_for_service(60)
+        assert self.until(client.service_is_ready)
         request = ChangeState.Request()
         request.transition.id = transition
-        answered = threading.Event()
-        client.call_async(request).add_done_callback(lambda _: answered.set())
-        answered.wait(15)
+        self.answer(client, request)
 
     def tick(self, now: int) -> None:
         self.clock.publish(Clock(clock=Time(nanoseconds=now).to_msg()))
 
-    def play(self, path: Path, rate: float, readers: int) -> int:
+    def taken(self, topic: str) -> int:
+        """How many messages of a topic the monitor has taken, as it reports twice a second."""
+        return int(self.values.get(f"messages of {topic}", 0))
+
+    def send(self, now: int, topic: str, data: bytes) -> None:
+        """Publish one message, and wait until the monitor has taken it.
+
+        Whatever came to the node before a request is taken before the answer.
+        """
+        self.tick(now)
+        self.publishers[topic].publish(data)
+        self.sent.append((now, topic, data.hex()))
+        self.answer(self.asked, GetState.Request())
+
+    def play(self, path: Path, readers: int, before: float) -> int:
         """Publish all messages; the time of the last."""
         rows = [line.split() for line in path.read_text().splitlines()]
-        self.tick(int(rows[0][0]) - 10**9)
-        while any(
-            self.publishers[t].get_subscription_count() < readers for t in ("/scan", "/odom")
-        ):
-            time.sleep(0.02)
-        begin, first = time.monotonic(), int(rows[0][0])
+        assert self.until(
+            lambda: all(
+                self.publishers[topic].get_subscription_count() >= readers for topic in _STAMPED
+            )
+        )
+        moved = time.time_ns() - round(before * SECOND) - int(rows[0][0])
+        begun = set()
         for text, topic, payload in rows:
-            now = int(text)
-            time.sleep(max(0.0, begin + (now - first) / 1e9 / rate - time.monotonic()))
-            self.keep_up(topic)
-            if topic == "/odom":  # the one that comes most often
-                self.tick(now)
-            self.publishers[topic].publish(bytes.fromhex(payload))
-            while topic == "/odom" and not self.has_taken(topic):
-                # A reliable reader that has just met its publisher keeps messages back for seconds,
-                # and then all but the last ones of its queue are lost.
-                time.sleep(0.02)
-                begin = time.monotonic() - (now - first) / 1e9 / rate
+            now, data = int(text) + moved, bytearray.fromhex(payload)
+            if topic in _STAMPED:
+                seconds, rest = _STAMP.unpack_from(data, 4)
+                stamp = seconds * SECOND + rest + moved
+                _STAMP.pack_into(data, 4, *divmod(stamp, SECOND))
+            self.send(now, topic, bytes(data))
+            while topic in _STAMPED and topic not in begun:
+                # A subscription without a memory ignores a publisher that it does not know yet.
+                if self.until(lambda topic=topic: self.taken(topic) > 0, AGAIN):
+                    begun.add(topic)
+                else:
+                    self.send(now, topic, bytes(data))
         return now
 
+    def go_on(self, now: int, after: float) -> list[int]:
+        """Let time pass without messages; the times."""
+        times = [now + i * STEP for i in range(1, round(after * SECOND) // STEP + 1)]
+        for each in times:
+            self.tick(each)
+            self.answer(self.asked, GetState.Request())
+            beats = len(self.stops)
+            assert self.until(lambda beats=beats: len(self.stops) >= beats + BEATS)
+        return times
 
-def main(path: str, rate: str, readers: str) -> None:
-    """Play, then let time go on for ever."""
+
+def main(path: str, readers: str, before: str, after: str) -> None:
+    """Play, and print the answers."""
     rclpy.init()
-    node = rclpy.create_node("player")
-    player = Player(node)
-    threading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()
+    player = Player(rclpy.create_node("player"))
     player.change(Transition.TRANSITION_CONFIGURE)
     player.change(Transition.TRANSITION_ACTIVATE)
-    now = player.play(Path(path), float(rate), int(readers))
-    for line in sys.stdin:
-        for _ in range(10 if line == "on\n" else 0):
-            now += AFTERWARDS
-            player.tick(now)
-            time.sleep(0.01)
-        found = {"lines": player.lines, "values": player.values, "wheels": player.wheels}
-        print(json.dumps(found), flush=True)
+    end = player.play(Path(path), int(readers), float(before))
+    times = player.go_on(end, float(after))
+    for publisher in player.publishers.values():
+        assert publisher.wait_for_all_acked(Duration(seconds=PATIENCE))
+    reported = dict(player.values)
+    assert player.until(lambda: player.values != reported)
+    found = {
+        "sent": player.sent,
+        "times": times,
+        "lines": player.lines,
+        "values": player.values,
+        "wheels": player.wheels,
+    }
+    print(json.dumps(found), flush=True)
 
 
 if __name__ == "__main__":
