@@ -225,10 +225,10 @@ def test_in_humble_the_node_compares_the_names_of_types(package: Path, tmp_path:
     write_headers(tmp_path, TYPES, FIELDS, snake)
     source, strict = package / "src", [*STRICT, "-DFAKE_HUMBLE", f"-I{tmp_path}", f"-I{FAKE}"]
     node = built(tmp_path, source, source / "node.cpp", (), strict)
-    other = [f"offer /scan {SCAN} 255", "/scan 3.0", "beat"]
-    assert "true" not in stops(played(node, *BEGIN, *known(SECOND), *other)[1])[2:]
-    other = ["offer /scan nav_msgs/msg/Odometry 17", "/scan 3.0"]
-    assert stops(played(node, *BEGIN, *known(SECOND), *other)[1])[2] == "true"
+    for offer, expected in ((f"{SCAN} 255", "false"), ("nav_msgs/msg/Odometry 17", "true")):
+        script = [*BEGIN, *known(SECOND), f"offer /scan {offer}", "/scan 3.0", "beat", "signal"]
+        _, lines, _ = played(node, *script)
+        assert stops(lines)[2:-1] == [expected] * (2 if expected == "true" else 1)
 
 
 @pytest.mark.slow
