@@ -323,10 +323,10 @@ class ActionBinding:
 
 Part = tuple[str, str]
 """`("signal", "vx")`, `("proposition", "near")`, `("clock", "")`, `("map", "")`."""
-SHARED = ("interceptor", "assume", "environment", "map", "run", "action")
+SHARED = ("interceptor", "assume", "environment", "map", "run", "action", "agent")
 """Tables that belong to no single requirement: `[interceptor]`, `[assume]`,
-`[[assume.requirement]]`, `[map]`, `[run.label]` and `[action.NAME]`. Only some commands read
-them."""
+`[[assume.requirement]]`, `[map]`, `[run.label]`, `[action.NAME]` and `[agent]`. Only some commands
+read them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -364,6 +364,9 @@ class Declarations:
     verdict on a log depends on them."""
     actions: Mapping[str, ActionBinding] = field(default_factory=dict)
     """`[action.NAME]`: name of an agent's action → what it publishes."""
+    agent_trace: str | None = None
+    """`[agent]`: the topic on which agents report beliefs, goals and actions; no verdict depends on
+    it."""
 
     @property
     def signal_names(self) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""The tables `[action.NAME]` of `bindings.toml`: what an action of an agent publishes."""
+"""The tables `[action.NAME]` and `[agent]`: what an agent's action publishes, and its trace."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _EXAMPLES = {
 
 
 class ActionTables(Fields):
-    """Reader of the tables `[action.NAME]`."""
+    """Reader of the tables `[action.NAME]` and `[agent]`."""
 
     def actions(self) -> dict[str, ActionBinding]:
         """Name of the action → its message; those with errors are left out."""
@@ -35,6 +35,22 @@ class ActionTables(Fields):
                 bound[name] = binding
         self._check_types(bound)
         return bound
+
+    def trace(self) -> str | None:
+        """The topic of the trace; None if the table is absent or has errors."""
+        table = self.tables.data.get("agent")
+        if table is None:
+            return None
+        if not isinstance(table, dict):
+            self._say(diagnostic("agent_not_table", self.tables.place("agent")))
+            return None
+        self._check_keys(table, ("trace",), "[agent]", "agent")
+        topic = table.get("trace")
+        if isinstance(topic, str) and TOPIC.fullmatch(topic) and topic.startswith("/"):
+            return topic
+        where = self.tables.value("agent", "trace") if "trace" in table else None
+        self._say(diagnostic("bad_agent_trace", where or self.tables.place("agent")))
+        return None
 
     def _binding(self, name: str, table: Mapping[str, Any]) -> ActionBinding | None:
         before, at = len(self.notes.diagnostics), ("action", name)
