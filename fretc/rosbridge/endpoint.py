@@ -67,6 +67,11 @@ class Endpoint:
         return f"ws://{self._host}:{self._port}"
 
     @property
+    def port(self) -> int:
+        """The port on which it listens, or has listened."""
+        return self._port
+
+    @property
     def clients(self) -> int:
         """The number of clients."""
         return len(self._clients)

@@ -129,6 +129,7 @@ TABLES = {
     "map": coordinates._MAP,
     "run": labels._RUN,
     "action.NAME": actions._FIELDS,
+    "agent": actions._AGENT,
     "hazards.toml": hazards._FIELDS,
     "waivers.toml": waivers._FIELDS,
     "fretc.toml": settings._FIELDS,
@@ -184,6 +185,7 @@ LEAST: Mapping[str, Table] = {
     "assume": {"stands": "stopped", "latency": "1 s", "braking": "1 s"},
     "map": {"x": "/at.x", "y": "/at.y"},
     "run": {},
+    "agent": {"trace": "/agent/trace"},
     "action.NAME": {"topic": "/s", "type": "std_msgs/Bool", "message": {}},
     "hazards.toml": {"title": "t"},
     "waivers.toml": {

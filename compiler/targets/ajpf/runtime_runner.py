@@ -30,6 +30,8 @@ BAD = 2
 RELEASE = "11"
 ANTLR = "antlr-4.13"
 """MCAPL's parsers are made by it; a library that is older cannot read them."""
+DIES = "-XX:+ExitOnOutOfMemoryError"
+"""Without memory, the agent is silent, and the interceptor stops the robot."""
 TOPIC = r"/?[A-Za-z_]\w*(?:/[A-Za-z_]\w*)*"
 
 
@@ -54,7 +56,7 @@ def main(arguments: Sequence[str]) -> int:
         java, javac, classes = tools()
         with tempfile.TemporaryDirectory(prefix="agent-") as build:
             compiled(here, Path(build), javac, classes)
-            command = [java, *shlex.split(os.environ.get("AGENT_JAVA_OPTIONS", "")), "-cp"]
+            command = [java, DIES, *shlex.split(os.environ.get("AGENT_JAVA_OPTIONS", "")), "-cp"]
             command += [f"{build}{os.pathsep}{classes}", "ail.mas.AIL"]
             command.append(str(configured(here, Path(build), options)))
             print(f"runs {manifest['agent']} at {options.url}", flush=True)

@@ -16,6 +16,7 @@ from fretish.diagnostics.messages import diagnostic
 ROS_TYPE = re.compile(r"(?P<package>[a-z]\w*)/(?P<message>[A-Z]\w*)", re.ASCII)
 """A message type without `msg`, as in ROS 1."""
 _FIELDS = ("topic", "type", "message")
+_AGENT = ("trace",)
 _EXAMPLES = {
     "topic": '"/gwendolen_control"',
     "type": '"std_msgs/Bool"',
@@ -44,7 +45,7 @@ class ActionTables(Fields):
         if not isinstance(table, dict):
             self._say(diagnostic("agent_not_table", self.tables.place("agent")))
             return None
-        self._check_keys(table, ("trace",), "[agent]", "agent")
+        self._check_keys(table, _AGENT, "[agent]", "agent")
         topic = table.get("trace")
         if isinstance(topic, str) and TOPIC.fullmatch(topic) and topic.startswith("/"):
             return topic
