@@ -23,7 +23,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.ajpf import bundle, names, percepts
 from compiler.targets.ajpf.safety_function import Sif
 from compiler.targets.target import DEFAULT, Target, TargetOptions, stem
-from fretish.bindings.declarations import ActionBinding, Declarations
+from fretish.bindings.declarations import ActionBinding, Declarations, ServiceCall
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.reading.recursion import with_recursion_limit
@@ -72,15 +72,16 @@ def _unbound(requirement: FormalizedRequirement, form: Sif) -> Diagnostic | None
     if declared.interceptor is None:
         return diagnostic("stop_topic_not_bound", span, requirement=id, bindings=name)
     for action in actions:
-        if action not in declared.actions:
+        if action not in declared.actions and action not in declared.calls:
             return diagnostic(
                 "action_not_bound", span, requirement=id, action=action, bindings=name
             )
     stop = _topic(declared.interceptor.stop)
-    stops = [declared.actions[a] for a in actions if _topic(declared.actions[a].topic) == stop]
-    if not stops:
-        named = ", ".join(f"`{action}`" for action in actions)
-        return diagnostic("no_action_stops", span, requirement=id, stop=stop, actions=named)
+    stops = [
+        declared.actions[action]
+        for action in actions
+        if action in declared.actions and _topic(declared.actions[action].topic) == stop
+    ]
     for each in stops:
         if each.type != "std_msgs/Bool" or each.message not in _BOOLEANS:
             return diagnostic(
@@ -91,6 +92,9 @@ def _unbound(requirement: FormalizedRequirement, form: Sif) -> Diagnostic | None
                 type=each.type,
                 stop=stop,
             )
+    if not any(each.message == _BOOLEANS[0] for each in stops):
+        named = ", ".join(f"`{action}`" for action in actions)
+        return diagnostic("no_action_stops", span, requirement=id, stop=stop, actions=named)
     return None
 
 
@@ -124,7 +128,8 @@ def package(requirement: FormalizedRequirement) -> str:
 def _files(requirement: FormalizedRequirement, options: TargetOptions) -> dict[str, str]:
     form, declared = _form(requirement, options), _declared(requirement)
     assert declared.interceptor is not None, "it is refused"
-    bound = [declared.actions[action] for action in _actions(form)]
+    bound = [declared.actions[name] for name in _actions(form) if name in declared.actions]
+    calls = [declared.calls[name] for name in _actions(form) if name in declared.calls]
     name = package(requirement)
     values = {
         "package": name,
@@ -135,6 +140,7 @@ def _files(requirement: FormalizedRequirement, options: TargetOptions) -> dict[s
         "signals": percepts.signal_code(declared, form),
         "percepts": percepts.percept_code(declared, form),
         "actions": [_action_code(each) for each in bound],
+        "calls": [_call_code(each) for each in calls],
     }
     texts = {
         "SIF.gwen": bundle.texts(requirement, form, options)["SIF.gwen"],
@@ -145,7 +151,7 @@ def _files(requirement: FormalizedRequirement, options: TargetOptions) -> dict[s
         .read_text(encoding="utf-8"),
         "README.md": render("agent-runtime/README.md.j2", **values),
     }
-    manifest = _manifest(requirement, form, bound)
+    manifest = _manifest(requirement, form, bound, calls)
     digests = {file: sha256(text) for file, text in sorted(texts.items())}
     return {**texts, "manifest.json": f"{to_json({**manifest, 'files': digests})}\n"}
 
@@ -159,8 +165,21 @@ def _action_code(bound: ActionBinding) -> Mapping[str, str]:
     }
 
 
+def _call_code(call: ServiceCall) -> Mapping[str, str]:
+    return {
+        "name": percepts.literal(call.action),
+        "service": percepts.literal(_topic(call.service)),
+        "type": percepts.literal(call.type),
+        "request": percepts.literal(call.request),
+        "limit": str(call.limit),
+    }
+
+
 def _manifest(
-    requirement: FormalizedRequirement, form: Sif, bound: Sequence[ActionBinding]
+    requirement: FormalizedRequirement,
+    form: Sif,
+    bound: Sequence[ActionBinding],
+    calls: Sequence[ServiceCall],
 ) -> dict[str, Any]:
     declared = _declared(requirement)
     assert declared.interceptor is not None, "it is refused"
@@ -188,6 +207,16 @@ def _manifest(
             }
             for each in bound
         ],
+        "calls": [
+            {
+                "action": each.action,
+                "service": _topic(each.service),
+                "type": each.type,
+                "request": loads(each.request),
+                "limit_ns": each.limit,
+            }
+            for each in calls
+        ],
     }
 
 
@@ -206,6 +235,6 @@ TARGET = Target(
         partial(refusal, options=_WEAKEN),
         partial(bundle.remark, options=_WEAKEN),
     ),
-    reads=("interceptor", "action"),
+    reads=("interceptor", "action", "call"),
     next_step="`python3 run.py` in the folder starts it",
 )

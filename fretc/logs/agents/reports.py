@@ -1,8 +1,9 @@
 """The reports of agents on the topic of their trace: one JSON text in a `std_msgs/String` each.
 
 Such as `{"time": 17, "agent": "sw", "beliefs": ["near"], "goals": [], "action": "halt"}`; `time`
-is in nanoseconds, and `action` null without one. A report in another form is counted, and left
-out. The time of a report is that of its message; where the clock goes by stamps, it is `time`.
+is in nanoseconds, `action` is null without one, and `"failed": true` says that it has failed. A
+report in another form is counted, and left out. The time of a report is that of its message; where
+the clock goes by stamps, it is `time`.
 """
 
 from __future__ import annotations
@@ -111,7 +112,8 @@ def _parsed(read: Mapping[str, Any], time: int) -> _Report | None:
         return None
     if action is not None and not _is_name(action):
         return None
-    return _Report(str(agent), MentalState(time, beliefs, goals), action)
+    done = f"{action} (failed)" if action and read.get("failed") is True else action
+    return _Report(str(agent), MentalState(time, beliefs, goals), done)
 
 
 def _names(value: object) -> tuple[str, ...] | None:

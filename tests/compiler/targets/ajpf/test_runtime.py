@@ -66,11 +66,16 @@ def test_the_files_of_the_papers_requirement(golden: Callable[[str, str], None])
     ("old", "new", "message"),
     [
         ("[action.undo_stopped]", "[action.other]", "F619 the agent of R1 does `undo_stopped`"),
+        (
+            "[action.stop_moving]",
+            '[call.stop_moving]\nservice = "/stop"\ntype = "std_srvs/Trigger"\n[action.x]',
+            "no action of the agent of R1 publishes true on `/gwendolen_control`",
+        ),
         ("[interceptor]", "[xinterceptor]", ""),
         (
             'topic   = "/gwendolen_control"',
             'topic   = "/other"',
-            "no action of the agent of R1 publishes on `/gwendolen_control`",
+            "no action of the agent of R1 publishes true on `/gwendolen_control`",
         ),
         (
             "message = { data = true }",
