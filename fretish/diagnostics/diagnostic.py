@@ -234,6 +234,8 @@ class Code(Enum):
     BAD_QUERY = ("F913", "the query cannot be answered")
     BAD_SCENARIO = ("F914", "the scenario of a simulation cannot be run")
     AGENT_NOT_STARTED = ("F915", "the agent of a simulation cannot be started")
+    NOT_IMPORTED = ("F917", "a part of an agent or of its properties is not imported")
+    BELIEF_IS_ACTION = ("F918", "a property is about a belief that is an action of the agent")
     NO_REPORT = ("F916", "messages of the trace of an agent are no reports")
     NO_KEY = ("F920", "the user has no key, so results of an interrupted audit are not kept")
     FOREIGN_PLACE = ("F921", "evidence names a log outside the permitted places")
