@@ -236,6 +236,7 @@ class Code(Enum):
     AGENT_NOT_STARTED = ("F915", "the agent of a simulation cannot be started")
     NOT_IMPORTED = ("F917", "a part of an agent or of its properties is not imported")
     BELIEF_IS_ACTION = ("F918", "a property is about a belief that is an action of the agent")
+    AGENT_UNFIT = ("F919", "an agent of your own does not fit the bindings")
     NO_REPORT = ("F916", "messages of the trace of an agent are no reports")
     NO_KEY = ("F920", "the user has no key, so results of an interrupted audit are not kept")
     FOREIGN_PLACE = ("F921", "evidence names a log outside the permitted places")

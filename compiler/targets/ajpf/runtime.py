@@ -77,11 +77,7 @@ def _unbound(requirement: FormalizedRequirement, form: Sif) -> Diagnostic | None
                 "action_not_bound", span, requirement=id, action=action, bindings=name
             )
     stop = _topic(declared.interceptor.stop)
-    stops = [
-        declared.actions[action]
-        for action in actions
-        if action in declared.actions and _topic(declared.actions[action].topic) == stop
-    ]
+    stops = [each for each in declared.actions.values() if _topic(each.topic) == stop]
     for each in stops:
         if each.type != "std_msgs/Bool" or each.message not in _BOOLEANS:
             return diagnostic(
@@ -92,7 +88,7 @@ def _unbound(requirement: FormalizedRequirement, form: Sif) -> Diagnostic | None
                 type=each.type,
                 stop=stop,
             )
-    if not any(each.message == _BOOLEANS[0] for each in stops):
+    if not any(e.message == _BOOLEANS[0] and e.action in actions for e in stops):
         named = ", ".join(f"`{action}`" for action in actions)
         return diagnostic("no_action_stops", span, requirement=id, stop=stop, actions=named)
     return None
@@ -128,8 +124,7 @@ def package(requirement: FormalizedRequirement) -> str:
 def _files(requirement: FormalizedRequirement, options: TargetOptions) -> dict[str, str]:
     form, declared = _form(requirement, options), _declared(requirement)
     assert declared.interceptor is not None, "it is refused"
-    bound = [declared.actions[name] for name in _actions(form) if name in declared.actions]
-    calls = [declared.calls[name] for name in _actions(form) if name in declared.calls]
+    bound, calls = [*declared.actions.values()], [*declared.calls.values()]
     name = package(requirement)
     values = {
         "package": name,

@@ -8,7 +8,7 @@ import subprocess
 import sys
 import time
 from array import array
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from queue import Empty, Queue
@@ -49,6 +49,7 @@ class Robot:
         folder: Path,
         subject: FormalizedRequirement,
         services: Mapping[str, Service] = NO_SERVICES,
+        arguments: Sequence[str] = (),
     ) -> None:
         self.stops: list[bool] = []
         self.traces: Queue[dict[str, Any]] = Queue()
@@ -59,7 +60,7 @@ class Robot:
         bundle = write(folder / "r1_agent", texts(subject))
         self.process = subprocess.Popen(
             [sys.executable, str(bundle / "run.py"), "--url", self.endpoint.url]
-            + ["--trace", TRACE],
+            + ["--trace", TRACE, *arguments],
             env={**os.environ, "AJPF_HOME": mcapl()},
             stdout=subprocess.DEVNULL,
             stderr=self.errors,
@@ -121,8 +122,9 @@ def robot(
     folder: Path,
     subject: FormalizedRequirement | None = None,
     services: Mapping[str, Service] = NO_SERVICES,
+    arguments: Sequence[str] = (),
 ) -> Iterator[Robot]:
-    running = Robot(folder, subject or made(), services)
+    running = Robot(folder, subject or made(), services, arguments)
     try:
         yield running
     finally:
@@ -307,6 +309,37 @@ public final class Latch {
 """
 
 
+OWN = """\
+GWENDOLEN
+:name: agilex_agent
+
+:Initial Beliefs:
+
+:Initial Goals:
+
+:Plans:
++too_close : {True} <- print("too near; I stop"), stop_moving, +halted;
+"""
+
+
+@needs("java", "javac")
+@pytest.mark.slow
+def test_an_agent_that_was_written_by_hand_runs(tmp_path: Path) -> None:
+    """It never releases the robot, unlike the emitted one."""
+    (tmp_path / "own.gwen").write_text(OWN)
+    with robot(tmp_path, arguments=["--agent", str(tmp_path / "own.gwen")]) as subject:
+        subject.drive(5.0, subject.last(False))
+        subject.drive(0.31, subject.last(True))
+        record = subject.record()
+        while record["beliefs"] != ["halted", "too_close"]:
+            record = subject.record()
+        subject.stops.clear()
+        subject.drive(5.0, lambda: len(subject.stops) > 5)
+        assert {*subject.stops} == {True}
+        while record["beliefs"] != ["halted"]:
+            record = subject.record()
+
+
 @needs("java", "javac")
 @pytest.mark.slow
 def test_what_comes_and_goes_between_two_perceptions_is_perceived(tmp_path: Path) -> None:
@@ -358,4 +391,4 @@ def test_a_topic_of_another_type_ends_it_before_it_begins(tmp_path: Path) -> Non
         )
     assert done.returncode == 2
     assert "/scan has the type std_msgs/String, not sensor_msgs/LaserScan" in done.stderr
-    assert "error: a topic is of another type, or cannot be used" in done.stderr
+    assert "error: F919 a topic is of another type, or cannot be used" in done.stderr
