@@ -22,7 +22,7 @@ from fretc.audit.measurements.states import states
 from fretc.audit.measurements.tallies import tally
 from fretc.audit.measurements.trials import Count, Trials
 from fretc.audit.measurements.unknown_inputs import unknown_inputs, without_brackets
-from fretc.audit.measurements.violations import DemandText, violations
+from fretc.audit.measurements.violations import BoundBeliefs, DemandText, violations
 from fretc.audit.phases.by_shift import Phases, phases
 from fretc.logs import log_diagnostics
 from fretc.logs.sample_fingerprint import fingerprint
@@ -61,6 +61,8 @@ class MonitoredRequirement:
     """The situations to look for in runs; empty: they are not measured."""
     is_assumption: bool = False
     """Whether it demands something of the environment."""
+    beliefs: Mapping[str, str] = field(default_factory=dict)
+    """Proposition → the belief of an agent, where the names differ."""
 
     @property
     def propositions(self) -> tuple[str, ...]:
@@ -225,6 +227,7 @@ def _evidence(
             at,
             recording,
             signals,
+            BoundBeliefs(columns, requirement.beliefs),
         ),
         open=tuple(at(t) for t, _ in outcome.open),
         latencies=tuple(round(k.seconds - t.seconds, 9) for t, k in answers),

@@ -399,6 +399,7 @@ def _recording(
             *log_diagnostics.few(damages, place),
             *run.notes,
             *watch.findings,
+            *columns.reports.findings(place),
         ),
         intact=not run.damages and not watch.lost,
         checked=run.checked,
@@ -406,4 +407,5 @@ def _recording(
         described=run.described,
         origin=watch.origin,
         late=columns.late(),
+        agents=columns.reports.traces(),
     )

@@ -129,6 +129,8 @@ TABLES = {
     "map": coordinates._MAP,
     "run": labels._RUN,
     "action.NAME": actions._FIELDS,
+    "call.NAME": actions._CALL,
+    "agent": actions._AGENT,
     "hazards.toml": hazards._FIELDS,
     "waivers.toml": waivers._FIELDS,
     "fretc.toml": settings._FIELDS,
@@ -184,6 +186,8 @@ LEAST: Mapping[str, Table] = {
     "assume": {"stands": "stopped", "latency": "1 s", "braking": "1 s"},
     "map": {"x": "/at.x", "y": "/at.y"},
     "run": {},
+    "call.NAME": {"service": "/s", "type": "std_srvs/Trigger"},
+    "agent": {"trace": "/agent/trace"},
     "action.NAME": {"topic": "/s", "type": "std_msgs/Bool", "message": {}},
     "hazards.toml": {"title": "t"},
     "waivers.toml": {

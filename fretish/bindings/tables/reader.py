@@ -21,7 +21,7 @@ from fretish.reading.limits import with_budget
 from fretish.reading.toml_text import Tables, read
 
 _TABLES = ("clock", "signal", "proposition", "variable", "interceptor", "assume", "map", "run",
-           "action", "fret")  # fmt: skip
+           "action", "call", "agent", "fret")  # fmt: skip
 S = TypeVar("S")
 T = TypeVar("T", Signal, Proposition)
 
@@ -86,6 +86,8 @@ class _TablesReader(Fields):
             VariableTables(tables, notes).kept(),
             self._shared("environment", loop.sentences),
             self._shared("action", ActionTables(tables, notes).actions),
+            self._shared("call", ActionTables(tables, notes).calls),
+            self._shared("agent", ActionTables(tables, notes).trace),
         )
 
     def _shared(self, kind: str, read: Callable[[], S]) -> S:
