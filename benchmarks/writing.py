@@ -1,0 +1,191 @@
+"""How often `fretc write` offers the right reading of published requirements in plain English.
+
+    python -m benchmarks.writing FRET [--names]    # FRET: a clone of NASA-SW-VnV/fret
+
+The case studies of FRET hold requirements in English, as their rationale, beside FRETish. A reading
+is right if its sentence has the same verdict on all finite runs as the published one, up to a
+renaming of its atoms: one name for each comparison or proposition, where `x > 5` is `!(x <= 5)`.
+The rules were made with one half, chosen by a fixed seed; the other half measures them.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import random
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import permutations
+from pathlib import Path
+
+from compiler.formalization.formalize import formalize
+from compiler.formalization.formalized import FormalizedRequirement
+from fretc.testing.runs import Absence, difference
+from fretish import expressions as e
+from fretish import syntax as s
+from fretish.classes.frozen import dataclass
+from fretish.diagnostics.source import Source
+from fretish.documents import RequirementEntry
+from fretish.english.readings import readings
+from fretish.english.vocabulary import Vocabulary
+from fretish.english.words import sentences
+from fretish.parser import parse
+from fretish.printer import expression, sentence
+
+SEED = 20261125
+FILES = (
+    "FiniteStateMachine/fsm_reqts_and_vars",
+    "LMCPS/LM_requirements",
+    "LiquidMixer/LM_reqts_and_vars",
+)
+"""The case studies whose rationales state requirements."""
+MOST_ATOMS = 6
+SECONDS = 10
+"""CPU seconds for each comparison."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """A published requirement."""
+
+    study: str
+    id: str
+    english: str
+    fretish: str
+    names: Vocabulary
+    """The variables of its project."""
+
+
+def pairs(fret: Path) -> tuple[Pair, ...]:
+    """All requirements with an English text, in a fixed order."""
+    found: list[Pair] = []
+    for study in FILES:
+        data = json.loads((fret / f"caseStudies/{study}.json").read_text("utf-8"))
+        for row in data["requirements"]:
+            english = (row.get("rationale") or "").strip()
+            if english:
+                names = _names(data["variables"], row["project"])
+                study_name = study.rpartition("/")[2]
+                found.append(Pair(study_name, row["reqid"], english, row["fulltext"], names))
+    return tuple(sorted(found, key=lambda p: (p.study, p.id, p.english, p.fretish)))
+
+
+def halves(every: Sequence[Pair]) -> tuple[tuple[Pair, ...], tuple[Pair, ...]]:
+    """The half for which rules were made, and the other one."""
+    mixed = [*every]
+    random.Random(SEED).shuffle(mixed)
+    middle = (len(mixed) + 1) // 2
+    return tuple(mixed[:middle]), tuple(mixed[middle:])
+
+
+def _names(variables: Sequence[Mapping[str, str]], project: str) -> Vocabulary:
+    own = [v for v in variables if v.get("project") == project and v.get("variable_name")]
+    truths = tuple(v["variable_name"] for v in own if v.get("dataType") == "boolean")
+    others = tuple(v["variable_name"] for v in own if v.get("dataType") != "boolean")
+    return Vocabulary(tuple(dict.fromkeys(truths)), tuple(dict.fromkeys(others)))
+
+
+def is_offered(pair: Pair, *, named: bool) -> bool:
+    """Whether a reading of the text is the published sentence.
+
+    Args:
+        pair: a published requirement.
+        named: whether the variables of its project are known.
+    """
+    published = parse(Source("published", pair.fretish.strip()).span())
+    if not isinstance(published, s.Sentence):
+        return False
+    names = pair.names if named else Vocabulary()
+    offered = (r for text in sentences(pair.english) for r in readings(text, names))
+    return any(is_same(published, reading.sentence) for reading in offered)
+
+
+def is_same(published: s.Sentence, other: s.Sentence) -> bool:
+    """Whether two sentences have the same verdicts up to a renaming of their atoms."""
+    atoms, own = _atoms(published), _atoms(other)
+    if len(atoms) != len(own) or len(atoms) > MOST_ATOMS:
+        return False
+    first = _formalized(published, {atom: f"p{i}" for i, atom in enumerate(atoms)})
+    if first is None:
+        return False
+    for order in permutations(range(len(own))):
+        renamed = _formalized(other, {atom: f"p{order[i]}" for i, atom in enumerate(own)})
+        if renamed is None:
+            return False
+        apart = difference(first, renamed, SECONDS)
+        if isinstance(apart, Absence) and not apart.why:
+            return True
+    return False
+
+
+def _formalized(tree: s.Sentence, names: Mapping[str, str]) -> FormalizedRequirement | None:
+    """The sentence with a name for each atom; None if fretc has no meaning for it."""
+    plain = s.with_expressions(tree, lambda part: _renamed(part, names))
+    text = sentence(plain)
+    return formalize(RequirementEntry("r", Source("r", text).span()), None)[0]
+
+
+_NEGATED = {">": "<=", ">=": "<", "!=": "="}
+
+
+def _renamed(part: e.Expression, names: Mapping[str, str]) -> e.Expression:
+    if isinstance(part, e.Comparison) and part.op in _NEGATED:
+        return e.Not(e.Name(names[_key(part)]))
+    if _key(part) in names:
+        return e.Name(names[_key(part)])
+    if isinstance(part, e.Call):
+        *bounds, last = part.args
+        return e.Call(part.name, (*map(_in_ticks, bounds), _renamed(last, names)))
+    return e.with_children(part, [_renamed(child, names) for child in e.children(part)])
+
+
+def _in_ticks(bound: e.Expression) -> e.Expression:
+    """A duration as a number of ticks, as FRET reads it without a clock."""
+    return e.Number(bound.digits) if isinstance(bound, e.Quantity) else bound
+
+
+def _atoms(tree: s.Sentence) -> tuple[str, ...]:
+    found: dict[str, None] = {}
+
+    def collect(part: e.Expression) -> e.Expression:
+        found.update(dict.fromkeys(_keys(part)))
+        return part
+
+    s.with_expressions(tree, collect)
+    return tuple(found)
+
+
+def _keys(part: e.Expression) -> Iterator[str]:
+    match part:
+        case e.Call(name, args) if name in e.COUNTING:
+            yield from _keys(args[-1])
+        case e.Name() | e.Comparison() | e.Call():
+            yield _key(part)
+        case _:
+            for child in e.children(part):
+                yield from _keys(child)
+
+
+def _key(part: e.Expression) -> str:
+    """The text of an atom; equal for a comparison and its negation."""
+    if isinstance(part, e.Comparison) and part.op in _NEGATED:
+        op = _NEGATED[part.op]
+        return f"{expression(part.left)} {op} {expression(part.right)}"
+    if isinstance(part, e.Comparison):
+        return f"{expression(part.left)} {part.op} {expression(part.right)}"
+    return expression(part) if isinstance(part, e.Name | e.Call) else ""
+
+
+def main() -> None:
+    """Print the figure of each half."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("fret", type=Path, metavar="FRET", help="a clone of FRET's repository")
+    fret = parser.parse_args().fret
+    for what, half in zip(("made with", "measured"), halves(pairs(fret)), strict=True):
+        for named in (True, False):
+            right = sum(is_offered(pair, named=named) for pair in half)
+            known = "names known" if named else "names new"
+            print(f"{what:10} {known:12} {right:3} of {len(half)}  {right / len(half):.0%}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,350 @@
+"""Clauses of a sentence: conditions before and after what a component shall do, and timings."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from enum import Enum, auto
+
+from fretish.classes.frozen import dataclass
+from fretish.english.amounts import Time, time_at
+from fretish.english.words import COPULAS, Phrase, lower
+
+
+class Role(Enum):
+    """What a clause is for."""
+
+    WHEN = auto()
+    """`when`, `if`: at the ticks at which it becomes true, or at all at which it is true."""
+    WHENEVER = auto()
+    UPON = auto()
+    WHILE = auto()
+    UNLESS = auto()
+    UNTIL = auto()
+    BEFORE = auto()
+    AFTER = auto()
+    EXCEPT = auto()
+    ONLY_WHEN = auto()
+    ONLY_AFTER = auto()
+    ONLY_BEFORE = auto()
+    WITHIN = auto()
+    FOR = auto()
+    MORE_THAN = auto()
+    """`for more than 5 seconds`."""
+    AFTER_TIME = auto()
+    EVERY = auto()
+    """`every 5 seconds`."""
+    ASIDE = auto()
+    """`regardless of the input`: it demands nothing, and is left out."""
+
+
+_WORDINGS = {
+    Role.WHEN: "when; if; in case; in case of; in the event of; in the event that; provided that; "
+    "provided; given that; in the case of; where",
+    Role.WHENEVER: "whenever; at any time when; any time; always when; always if",
+    Role.UPON: "upon; as soon as; once; every time; each time; the moment; at the moment when; "
+    "at the time of; immediately after; immediately when; every time that; on detection of; "
+    "directly after",
+    Role.WHILE: "while; during; as long as; throughout; so long as; whilst",
+    Role.UNLESS: "unless",
+    Role.UNTIL: "until; till; up until",
+    Role.BEFORE: "before; prior to",
+    Role.AFTER: "after; following; from the time",
+    Role.EXCEPT: "except when; except while; except if; except in; except during; except",
+    Role.ONLY_WHEN: "only when; only if; only while; only in; only during",
+    Role.ONLY_AFTER: "only after; only once",
+    Role.ONLY_BEFORE: "only before; only until",
+    Role.ASIDE: "regardless of; irrespective of; independent of; independently of; so that; "
+    "in order to; because; no matter; whatever; even if; although",
+}
+_MARKERS = sorted(
+    (
+        (tuple(wording.split()), role)
+        for role, some in _WORDINGS.items()
+        for wording in some.split(";")
+    ),
+    key=lambda marker: -len(marker[0]),
+)
+_TIMES = (
+    (Role.MORE_THAN, "for more than; for longer than; for durations exceeding; for at most; "
+     "for a time of more than"),
+    (Role.FOR, "for at least; for a period of; for a duration of; for the next; for"),
+    (Role.WITHIN, "within at most; within the next; within a maximum of; within; in less than; "
+     "in at most; no later than; not later than; at most; at the latest; in under; in"),
+    (Role.EVERY, "at least once every; at least every; once every; every"),
+    (Role.AFTER_TIME, "after exactly; after; exactly; at least"),
+)  # fmt: skip
+_TIME_MARKERS = sorted(
+    ((tuple(wording.split()), role) for role, some in _TIMES for wording in some.split(";")),
+    key=lambda marker: -len(marker[0]),
+)
+_SINCE = ("of", "after", "from", "since", "when", "once", "upon", "following")
+MODALS = tuple(
+    tuple(modal.split())
+    for modal in (
+        "is required to", "are required to", "has to", "have to", "needs to", "need to", "ought to",
+        "shall", "must", "should", "will", "can", "may",
+    )
+)  # fmt: skip
+_ONLY = {
+    Role.WHEN: Role.ONLY_WHEN,
+    Role.WHENEVER: Role.ONLY_WHEN,
+    Role.WHILE: Role.ONLY_WHEN,
+    Role.UPON: Role.ONLY_AFTER,
+    Role.AFTER: Role.ONLY_AFTER,
+    Role.BEFORE: Role.ONLY_BEFORE,
+    Role.UNTIL: Role.ONLY_BEFORE,
+}
+"""What "shall only ... when" makes of a clause."""
+_MODES = frozenset({"mode", "state", "phase"})
+_DETERMINERS = frozenset("the a an its it this no".split())
+
+
+@dataclass(frozen=True, slots=True)
+class Clause:
+    """A clause with its role; `marker` are the words that say the role."""
+
+    role: Role
+    marker: Phrase
+    words: Phrase = ()
+    time: Time | None = None
+    is_or: bool = False
+    """Whether "or" joins it to the clause before."""
+    is_since: bool = False
+    """Whether `words` are the event from which `time` counts."""
+
+
+@dataclass(frozen=True, slots=True)
+class Outline:
+    """The clauses of a sentence."""
+
+    subject: Phrase
+    modal: Phrase
+    predicate: Phrase
+    before: tuple[Clause, ...] = ()
+    after: tuple[Clause, ...] = ()
+
+    @property
+    def clauses(self) -> tuple[Clause, ...]:
+        """All clauses, in the order of the text."""
+        return (*self.before, *self.after)
+
+
+def outline(words: Phrase) -> Outline:
+    """The clauses of a sentence."""
+    start, length = _modal(words)
+    before, subject = _prefix(words[:start])
+    predicate, after = _suffix(words[start + length :])
+    if not length and not predicate:
+        predicate, subject = subject, ()
+    modal = words[start : start + length]
+    if lower(predicate[:1]) == ("only",) and any(clause.role in _ONLY for clause in after):
+        modal, predicate = (*modal, predicate[0]), predicate[1:]
+        after = tuple(replace(each, role=_ONLY.get(each.role, each.role)) for each in after)
+    return Outline(subject, modal, predicate, before, after)
+
+
+def _modal(words: Phrase) -> tuple[int, int]:
+    """Index and length of the modal; without one, where the main clause begins."""
+    said, depth = lower(words), 0
+    for index, word in enumerate(said):
+        depth += (word == "(") - (word == ")")
+        for modal in MODALS if depth == 0 else ():
+            if said[index : index + len(modal)] == modal and _may_be_modal(said, index):
+                return index, len(modal)
+    for index, word in enumerate(said):
+        if word in ("always", "never"):
+            return index, 0
+    commas = [i for i, word in enumerate(said) if word in (",", "then")]
+    return (commas[-1] + 1 if commas and _marker(words, 0) else 0), 0
+
+
+def _may_be_modal(said: tuple[str, ...], index: int) -> bool:
+    """Only a forbidden "may" or "can" demands something; "it can" permits."""
+    return said[index] not in ("can", "may") or said[index + 1 : index + 2] in (
+        ("not",),
+        ("never",),
+        ("only",),
+    )
+
+
+# Before the component --------------------------------------------------------------------------
+
+
+def _prefix(words: Phrase) -> tuple[tuple[Clause, ...], Phrase]:
+    """The clauses before the component, and the words about the component."""
+    if not words or _marker(words, 0) is None:
+        return (), words
+    pieces = _pieces(words)
+    if len(pieces) == 1:
+        first, rest = _without_comma(pieces[0])
+        pieces = [first, rest]
+    *conditions, subject = pieces
+    clauses: list[Clause] = []
+    for piece in conditions:
+        clauses += _inner(piece) if _marker(piece, 0) or not clauses else ()
+        if clauses and _marker(piece, 0) is None:
+            last = clauses[-1]
+            clauses[-1] = replace(last, words=(*last.words, *piece))
+    return tuple(clauses), subject
+
+
+def _pieces(words: Phrase) -> list[Phrase]:
+    """The words between commas and "then", outside of parentheses; the last is the component."""
+    pieces, depth, start = list[Phrase](), 0, 0
+    for index, word in enumerate(lower(words)):
+        depth += (word == "(") - (word == ")")
+        if depth == 0 and word in (",", "then", ":"):
+            if words[start:index]:
+                pieces.append(words[start:index])
+            start = index + 1
+    return [*pieces, words[start:]]
+
+
+def _without_comma(words: Phrase) -> tuple[Phrase, Phrase]:
+    """The clause and the component, where no comma separates them: at the last determiner."""
+    said = lower(words)
+    marker = _marker(words, 0)
+    first = len(marker[0]) if marker else 1
+    cuts = [i for i in range(first + 1, len(said)) if said[i] in _DETERMINERS]
+    cut = cuts[-1] if cuts else len(words) - 1
+    return words[:cut], words[cut:]
+
+
+def _inner(words: Phrase) -> list[Clause]:
+    """The clauses in a piece that begins with a marker: "when a and while b"."""
+    clauses, start, is_or = list[Clause](), 0, False
+    said = lower(words)
+    index = 1
+    cuts = []
+    while index < len(words):
+        found = _marker(words, index)
+        joined = said[index - 1] in ("and", "or")
+        if found and (joined or found[1] is Role.WHILE):
+            cuts.append((index - joined, index, joined and said[index - 1] == "or"))
+            index += len(found[0])
+        index += 1
+    for end, following, joins in [*cuts, (len(words), len(words), False)]:
+        clauses.append(_clause(words[start:end], is_or=is_or))
+        start, is_or = following, joins
+    return clauses
+
+
+def _clause(words: Phrase, *, is_or: bool) -> Clause:
+    time = _time_clause(words, 0)
+    if time is not None:
+        clause, end = time
+        rest = words[end:]
+        return replace(clause, words=rest, is_or=is_or)
+    found = _marker(words, 0)
+    if found is None:
+        return Clause(Role.WHEN, (), words, None, is_or)
+    length = len(found[0])
+    keep = 0 if found[0] != ("in",) else 1
+    return Clause(found[1], words[:length], words[max(length, keep) :], None, is_or)
+
+
+def _marker(words: Phrase, index: int) -> tuple[tuple[str, ...], Role] | None:
+    """The marker at a place, the longest."""
+    said = lower(words[index:])
+    if said[:1] == ("in",) and _MODES & {*said} and said[1:2] != ("case",):
+        return ("in",), Role.WHILE
+    return next((m for m in _MARKERS if said[: len(m[0])] == m[0]), None)
+
+
+# After the component ---------------------------------------------------------------------------
+
+
+def _suffix(words: Phrase) -> tuple[Phrase, tuple[Clause, ...]]:
+    """What the component shall do, and the clauses after it."""
+    starts = [*_starts(words)]
+    ends = [*(start for start, _ in starts), len(words)][1:]
+    clauses: list[Clause] = []
+    for (start, clause), end in zip(starts, ends, strict=True):
+        length = len(clause.marker) + (len(clause.time.used) if clause.time else 0)
+        rest = words[start + length : end]
+        is_or = bool(clauses) and lower(words[start - 1 : start]) == ("or",)
+        clauses.append(replace(clause, words=_trimmed(rest), is_or=is_or))
+    core = words[: starts[0][0]] if starts else words
+    if starts and starts[0][0] == 0 and clauses:
+        core, clauses[0] = _at_front(clauses[0])
+    return _with_rest(core, clauses)
+
+
+def _with_rest(core: Phrase, clauses: list[Clause]) -> tuple[Phrase, tuple[Clause, ...]]:
+    """The predicate with the words after a duration: "return within 5 s to the base"."""
+    whole: list[Clause] = []
+    for clause in clauses:
+        goes_on = clause.time is not None and not clause.is_since
+        if goes_on and clause.words and clause.words[0].text != "(":
+            core = (*core, *clause.words)
+            clause = replace(clause, words=())
+        whole.append(clause)
+    return _trimmed(core), tuple(whole)
+
+
+def _trimmed(phrase: Phrase) -> Phrase:
+    """Without joining words and commas at the end."""
+    while phrase and phrase[-1].lower in (",", "and", "or", ";"):
+        phrase = phrase[:-1]
+    return phrase
+
+
+def _at_front(clause: Clause) -> tuple[Phrase, Clause]:
+    """The predicate after a clause at its front: "shall, within 5 s, stop"."""
+    commas = [i for i, word in enumerate(clause.words) if word.text == ","]
+    cut = commas[0] + 1 if commas else 0
+    if clause.time is not None:
+        return clause.words[cut:], replace(clause, words=())
+    return clause.words[cut:], replace(clause, words=clause.words[: max(0, cut - 1)])
+
+
+def _starts(words: Phrase) -> Iterator[tuple[int, Clause]]:
+    """Where clauses begin after the modal."""
+    depth, index = 0, 0
+    said = lower(words)
+    while index < len(words):
+        depth += (said[index] == "(") - (said[index] == ")")
+        step = 1
+        if depth == 0:
+            timed = _time_clause(words, index)
+            found = _marker(words, index)
+            if timed is not None:
+                clause, step = timed
+                yield index, clause
+            elif found is not None and _begins(said, index, found):
+                step = len(found[0])
+                yield index, Clause(found[1], words[index : index + step])
+        index += step
+
+
+def _begins(said: tuple[str, ...], index: int, marker: tuple[tuple[str, ...], Role]) -> bool:
+    """Whether a marker begins a clause: not the "in" of a mode that is entered or left."""
+    if marker[0] != ("in",):
+        return True
+    before = said[:index]
+    return bool(before) and before[-1] not in COPULAS and index > 0
+
+
+def _time_clause(words: Phrase, index: int) -> tuple[Clause, int] | None:
+    """The clause of a duration at a place, and its number of words."""
+    said = lower(words[index:])
+    for wording, role in _TIME_MARKERS:
+        if said[: len(wording)] != wording:
+            continue
+        time = time_at(words, index + len(wording))
+        if time is not None:
+            end = time.end - index
+            if (
+                role is Role.AFTER_TIME
+                and wording[-1] != "after"
+                and said[end : end + 1] != ("after",)
+            ):
+                continue
+            marker = words[index : index + len(wording)]
+            since = 1 if said[end : end + 1] and said[end] in _SINCE else 0
+            if since:
+                clause = Clause(role, (*marker, words[index + end]), (), time, is_since=True)
+                return clause, end + since
+            return Clause(role, marker, (), time), end
+    return None
