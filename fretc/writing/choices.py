@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -131,7 +132,7 @@ def _merged(
 
 def _numbered(comparison: Comparison, place: dict[int, int]) -> tuple[Question, ...]:
     return tuple(
-        Question(each.run, frozenset(place[index] for index in each.allowed))
+        replace(each, allowed=frozenset(place[index] for index in each.allowed))
         for each in comparison.questions
     )
 
