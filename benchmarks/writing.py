@@ -25,9 +25,8 @@ from fretish import syntax as s
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.source import Source
 from fretish.documents import RequirementEntry
-from fretish.english.readings import readings
+from fretish.english.readings import demands, readings
 from fretish.english.vocabulary import Vocabulary
-from fretish.english.words import sentences
 from fretish.parser import parse
 from fretish.printer import expression, sentence
 
@@ -95,7 +94,7 @@ def is_offered(pair: Pair, *, named: bool) -> bool:
     if not isinstance(published, s.Sentence):
         return False
     names = pair.names if named else Vocabulary()
-    offered = (r for text in sentences(pair.english) for r in readings(text, names))
+    offered = (r for text in demands(pair.english) for r in readings(text, names))
     return any(is_same(published, reading.sentence) for reading in offered)
 
 

@@ -76,10 +76,10 @@ def write(
 
     Example: fretc write "if the battery is low, the drone must return within 5 seconds"
     """
-    from fretish.english.words import sentences
+    from fretish.english.readings import demands
 
     english = " ".join(text) if text else _input()
-    parts = sentences(english)
+    parts = demands(english)
     if not parts:
         fail(diagnostic("no_text_to_write"))
     if (id_ is not None or choose is not None) and len(parts) > 1:

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from enum import Enum, auto
+from itertools import pairwise
 
 from fretish.classes.frozen import dataclass
 from fretish.english.amounts import Time, time_at
-from fretish.english.words import COPULAS, Phrase, lower
+from fretish.english.words import COPULAS, Phrase, lower, words
 
 
 class Role(Enum):
@@ -34,6 +35,8 @@ class Role(Enum):
     AFTER_TIME = auto()
     EVERY = auto()
     """`every 5 seconds`."""
+    IFF = auto()
+    """`if and only if`."""
     ASIDE = auto()
     """`regardless of the input`: it demands nothing, and is left out."""
 
@@ -43,8 +46,7 @@ _WORDINGS = {
     "provided; given that; in the case of; where",
     Role.WHENEVER: "whenever; at any time when; any time; always when; always if",
     Role.UPON: "upon; as soon as; once; every time; each time; the moment; at the moment when; "
-    "at the time of; immediately after; immediately when; every time that; on detection of; "
-    "directly after",
+    "at the time of; every time that; on detection of",
     Role.WHILE: "while; during; as long as; throughout; so long as; whilst",
     Role.UNLESS: "unless",
     Role.UNTIL: "until; till; up until",
@@ -54,6 +56,7 @@ _WORDINGS = {
     Role.ONLY_WHEN: "only when; only if; only while; only in; only during",
     Role.ONLY_AFTER: "only after; only once",
     Role.ONLY_BEFORE: "only before; only until",
+    Role.IFF: "if and only if; exactly when; exactly if; exactly while",
     Role.ASIDE: "regardless of; irrespective of; independent of; independently of; so that; "
     "in order to; because; no matter; whatever; even if; although",
 }
@@ -173,20 +176,28 @@ def _may_be_modal(said: tuple[str, ...], index: int) -> bool:
 
 def _prefix(words: Phrase) -> tuple[tuple[Clause, ...], Phrase]:
     """The clauses before the component, and the words about the component."""
-    if not words or _marker(words, 0) is None:
+    if not words or not _opens(words):
         return (), words
     pieces = _pieces(words)
     if len(pieces) == 1:
         first, rest = _without_comma(pieces[0])
         pieces = [first, rest]
     *conditions, subject = pieces
+    timed = _time_clause(subject, 0)
+    if timed is not None and not timed[0].is_since:
+        conditions, subject = [*conditions, subject[: timed[1]]], subject[timed[1] :]
     clauses: list[Clause] = []
     for piece in conditions:
-        clauses += _inner(piece) if _marker(piece, 0) or not clauses else ()
-        if clauses and _marker(piece, 0) is None:
+        clauses += _inner(piece) if _opens(piece) or not clauses else ()
+        if clauses and not _opens(piece):
             last = clauses[-1]
             clauses[-1] = replace(last, words=(*last.words, *piece))
     return tuple(clauses), subject
+
+
+def _opens(words: Phrase) -> bool:
+    """Whether a clause begins with these words."""
+    return _marker(words, 0) is not None or _time_clause(words, 0) is not None
 
 
 def _pieces(words: Phrase) -> list[Phrase]:
@@ -204,6 +215,9 @@ def _pieces(words: Phrase) -> list[Phrase]:
 def _without_comma(words: Phrase) -> tuple[Phrase, Phrase]:
     """The clause and the component, where no comma separates them: at the last determiner."""
     said = lower(words)
+    timed = _time_clause(words, 0)
+    if timed is not None and not timed[0].is_since:
+        return words[: timed[1]], words[timed[1] :]
     marker = _marker(words, 0)
     first = len(marker[0]) if marker else 1
     cuts = [i for i in range(first + 1, len(said)) if said[i] in _DETERMINERS]
@@ -348,3 +362,25 @@ def _time_clause(words: Phrase, index: int) -> tuple[Clause, int] | None:
                 return clause, end + since
             return Clause(role, marker, (), time), end
     return None
+
+
+# Several demands in one sentence ---------------------------------------------------------------
+
+
+def divided(text: str) -> tuple[str, ...]:
+    """The demands of a sentence: "it shall start when a and stop when b" has two."""
+    phrase = words(text)
+    parts = outline(phrase)
+    for clause, following in pairwise(parts.after):
+        said = lower(clause.words)
+        cut = max((i for i, word in enumerate(said) if word == "and"), default=0)
+        verb = clause.words[cut + 1 :]
+        if cut and 0 < len(verb) <= _SHORT and not {*lower(verb)} & COPULAS and following.marker:
+            before = text[: clause.words[cut].start].rstrip(" ,")
+            head = text[: parts.modal[-1].start + len(parts.modal[-1].text)] if parts.modal else ""
+            start = parts.subject[0].start if parts.subject else 0
+            return before, *divided(f"{head[start:]} {text[verb[0].start :]}".strip())
+    return (text,)
+
+
+_SHORT = 3

@@ -42,10 +42,18 @@ def comparison(phrase: Phrase, names: Vocabulary) -> Part | None:
     sides = _sides(phrase)
     if sides is None:
         return _between(phrase, names) or _is_number(phrase, names)
-    right = _right(sides.right, names)
+    right, trailing = _right(sides.right, names)
     if right is None or not content(sides.left):
         return None
-    return _compared(sides.op, _left(sides.left, names), right, sides.words)
+    left = _left(sides.left, names)
+    if trailing and _is_new(left, names):
+        left = _left((*sides.left, *trailing), names)
+    return _compared(sides.op, left, right, sides.words)
+
+
+def _is_new(left: Part, names: Vocabulary) -> bool:
+    """Whether the left side is no name of the project."""
+    return {*left.names}.isdisjoint((*names.propositions, *names.numbers))
 
 
 def states_comparison(phrase: Phrase) -> bool:
@@ -108,11 +116,17 @@ def _is_number(phrase: Phrase, names: Vocabulary) -> Part | None:
     return _compared("=", _left(phrase[:at], names), Part(value[0], value[1]), phrase[at : at + 1])
 
 
-def _right(phrase: Phrase, names: Vocabulary) -> Part | None:
+def _right(phrase: Phrase, names: Vocabulary) -> tuple[Part | None, Phrase]:
+    """The right side, and the words after its number, which belong to the left."""
     value = amount_in(phrase)
-    if value is not None:
-        return Part(value[0], value[1])
-    return _left(phrase, names) if content(phrase) else None
+    if value is None:
+        return (_left(phrase, names) if content(phrase) else None), ()
+    rest = phrase[value[2] :]
+    belongs = bool(rest) and rest[0].lower in _PREPOSITIONS
+    return Part(value[0], value[1]), rest if belongs else ()
+
+
+_PREPOSITIONS = frozenset("from in to of on with at above below between inside outside per".split())
 
 
 def _left(phrase: Phrase, names: Vocabulary) -> Part:

@@ -11,12 +11,12 @@ from fretish import syntax as s
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.source import Source
 from fretish.english.amounts import Time
-from fretish.english.clauses import Clause, Role, outline
+from fretish.english.clauses import Clause, Role, divided, outline
 from fretish.english.parts import Part, joined
 from fretish.english.phrases import propositions
 from fretish.english.responses import Adverb, Response, responses
 from fretish.english.vocabulary import Vocabulary, lacking
-from fretish.english.words import Phrase, Places, carries_meaning, places, text, words
+from fretish.english.words import Phrase, Places, carries_meaning, places, sentences, text, words
 from fretish.parser import parse
 from fretish.printer import sentence as printed
 
@@ -47,6 +47,11 @@ class Reading:
         """Name of the project → words of its phrase that the name does not contain."""
         rest = {name: lacking(name, words(said)) for name, said in self.names.items()}
         return {name: some for name, some in rest.items() if some}
+
+
+def demands(text: str) -> tuple[str, ...]:
+    """The demands of a text, as sentences that `readings` reads one by one."""
+    return tuple(part for sentence in sentences(text) for part in divided(sentence))
 
 
 def readings(text: str, names: Vocabulary) -> tuple[Reading, ...]:
@@ -146,6 +151,8 @@ def _plain(role: Role, part: Part, negated: bool) -> Iterator[_Use]:
             yield _Use(scope=kind.AFTER)
         case Role.EXCEPT:
             yield _Use(scope=kind.NOT_IN)
+        case Role.IFF:
+            yield _Use(demand="iff", condition=_HOLDING)
         case Role.ONLY_WHEN:
             yield _Use(demand="only", condition=_HOLDING, part=part.negated())
         case Role.ONLY_AFTER:
@@ -292,6 +299,10 @@ def _demands(response: Response, frame: _Frame) -> Iterator[_Demand]:
     if "lasting" in frame.demands:
         assert isinstance(frame.timing, s.Within)
         yield from _lasting(response, frame, frame.timing.duration)
+        return
+    if "iff" in frame.demands and condition is not None:
+        said = part.negated().expression if response.negated else part.expression
+        yield None, _ALWAYS, e.Iff(condition.expression, said)
         return
     only = "only" in frame.demands
     negated = response.negated != only

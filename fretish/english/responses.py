@@ -28,7 +28,8 @@ _ADVERBS = {
     "at every tick; at every step; in all cases; forever; for ever",
     Adverb.EVENTUALLY: "eventually; sometime; at some point; at some time; sooner or later",
     Adverb.IMMEDIATELY: "immediately; at once; instantly; directly; simultaneously; right away; "
-    "without delay; initially; at the same time; straight away",
+    "without delay; initially; at the same time; straight away; at startup; at start up; at the start; "
+    "at the beginning",
     Adverb.NEXT: "at the next tick; at the next step; at the next timepoint; in the next step; "
     "in the next tick; next",
     Adverb.FINALLY: "finally; at the end; at the last timepoint",
@@ -76,6 +77,8 @@ def responses(parts: Outline, names: Vocabulary) -> tuple[Response, ...]:
     adverbs = (*more, *adverbs)
     component, of_component = _component(subject, names)
     negated = negated != bool(none)
+    if any(word.lower == "never" and word.start in signs for word in parts.predicate):
+        adverbs = (*adverbs, Adverb.ALWAYS) if Adverb.ALWAYS not in adverbs else adverbs
     change = _change(subject, predicate, names)
     if change is not None:
         before, after, words = change
@@ -88,6 +91,7 @@ def responses(parts: Outline, names: Vocabulary) -> tuple[Response, ...]:
             for part in propositions(rest, names)
         )
     is_state, phrase, claimed = _claim(subject, predicate, names)
+    used |= places(predicate) - places(phrase)
     if claimed or is_state:
         of_component = of_component if claimed == "ensured" else frozenset()
         component = component if of_component or component in names.components else _default(names)

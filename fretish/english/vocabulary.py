@@ -139,15 +139,21 @@ def content(words: Sequence[Word]) -> tuple[Word, ...]:
 
 def new_name(words: Sequence[Word]) -> str:
     """A name made of all content words: `battery_low`; never a reserved word."""
-    parts = ("".join(c if c.isalnum() or c == "_" else "_" for c in w.text) for w in content(words))
+    parts = (
+        "".join(c if c.isalnum() or c == "_" else "_" for c in _small(word.text))
+        for word in content(words)
+    )
     name = "_".join(filter(None, (part.strip("_") for part in parts))) or "it"
     if not name.isascii():
         name = "".join(c if c.isascii() else "_" for c in name).strip("_") or "it"
     if not name[0].isalpha():
         name = f"n_{name}"
-    plain = name if "_" in name and not name.isupper() else name.lower()
-    plain = plain.lower() if plain[0].isupper() and plain[1:].islower() else plain
-    return f"is_{plain}" if plain.lower() in RESERVED else plain
+    return f"is_{name}" if name.lower() in RESERVED else name
+
+
+def _small(word: str) -> str:
+    """The word without a capital at its start; `LED` stays."""
+    return word.lower() if word[1:].islower() or len(word) == 1 else word
 
 
 def lacking(name: str, words: Sequence[Word]) -> tuple[str, ...]:

@@ -60,6 +60,7 @@ Places = frozenset[int]
 
 def sentences(text: str) -> tuple[str, ...]:
     """The sentences of a text, without the full stop; white space is made single."""
+    text = _NO_SPACE.sub(" ", text)
     parts, start = [], 0
     for match in _END.finditer(text):
         parts.append(text[start : match.start()])
@@ -69,7 +70,6 @@ def sentences(text: str) -> tuple[str, ...]:
 
 def words(sentence: str) -> Phrase:
     """The words of a sentence; `mis-compare` is one, `60-second` are two."""
-    sentence = _NO_SPACE.sub(" ", sentence)
     plain = _DIGIT_HYPHEN.sub(" ", _HYPHEN.sub("_", sentence))
     found = []
     for match in _WORD.finditer(plain):
