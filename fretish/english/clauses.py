@@ -47,7 +47,8 @@ _WORDINGS = {
     Role.WHENEVER: "whenever; at any time when; any time; always when; always if",
     Role.UPON: "upon; as soon as; once; every time; each time; the moment; at the moment when; "
     "at the time of; every time that; on detection of",
-    Role.WHILE: "while; during; as long as; throughout; so long as; whilst",
+    Role.WHILE: "while; during; as long as; throughout; so long as; whilst; while in; when in; "
+    "if in; whenever in; when operating in; while operating in",
     Role.UNLESS: "unless",
     Role.UNTIL: "until; till; up until",
     Role.BEFORE: "before; prior to",
@@ -229,12 +230,13 @@ def _inner(words: Phrase) -> list[Clause]:
     """The clauses in a piece that begins with a marker: "when a and while b"."""
     clauses, start, is_or = list[Clause](), 0, False
     said = lower(words)
-    index = 1
+    first = _marker(words, 0)
+    index = len(first[0]) if first else 1
     cuts = []
     while index < len(words):
         found = _marker(words, index)
         joined = said[index - 1] in ("and", "or")
-        if found and (joined or found[1] is Role.WHILE):
+        if found and (joined or found[1] is Role.WHILE or found[0] in _MOMENTS):
             cuts.append((index - joined, index, joined and said[index - 1] == "or"))
             index += len(found[0])
         index += 1
@@ -384,3 +386,4 @@ def divided(text: str) -> tuple[str, ...]:
 
 
 _SHORT = 3
+_MOMENTS = (("at", "the", "time", "of"), ("at", "the", "moment", "when"))

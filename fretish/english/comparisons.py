@@ -11,14 +11,14 @@ from fretish.english.words import COPULAS, Phrase, lower, places, text
 
 _WORDINGS: dict[e.ComparisonOperator, str] = {
     "<=": "less than or equal to; smaller than or equal to; lower than or equal to; at most; "
-    "no more than; not more than; no greater than; not greater than; no higher than; up to; <=",
+    "no more than; not more than; no greater than; not greater than; no higher than; up to; <=; ≤",
     ">=": "greater than or equal to; more than or equal to; higher than or equal to; at least; "
-    "no less than; not less than; no lower than; not lower than; >=",
+    "no less than; not less than; no lower than; not lower than; >=; ≥",
     "<": "less than; lower than; smaller than; fewer than; falls below; drops below; fall below; "
     "drop below; sinks below; goes below; below; under; <",
     ">": "greater than; more than; higher than; larger than; rises above; goes above; rise above; "
-    "exceeds; exceed; exceeding; exceeded; above; over; beyond; >",
-    "!=": "different from; not equal to; unequal to; differs from; !=",
+    "exceeds; exceed; exceeding; above; over; beyond; >",
+    "!=": "different from; not equal to; unequal to; differs from; !=; ≠",
     "=": "equal to; equals; equal; set to; exactly; =",
 }
 _OPERATORS = sorted(

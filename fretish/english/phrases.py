@@ -8,7 +8,7 @@ from fretish import expressions as e
 from fretish.english.amounts import time_at
 from fretish.english.comparisons import comparison, states_comparison
 from fretish.english.parts import Part, joined
-from fretish.english.vocabulary import Vocabulary, matched, new_name, valued
+from fretish.english.vocabulary import Vocabulary, content, matched, new_name, valued
 from fretish.english.words import ARTICLES, COPULAS, Phrase, Word, lower, places, text
 
 _NEGATIONS = frozenset({"not", "never", "no"})
@@ -204,10 +204,12 @@ def _named(phrase: Phrase, names: Vocabulary) -> Part:
         name, word = value
         said = {f"{name} = {word}": text(phrase)}
         return Part(e.Comparison("=", e.Name(name), e.Name(word)), places(phrase), said)
-    match = matched(phrase, names, names.propositions)
-    name = match.name if match else new_name(phrase)
-    part = Part(e.Name(name), places(phrase), {name: text(phrase)})
-    return part.negated() if match and match.negated else part
+    claim = phrase[-1].lower if len(content(phrase)) > 1 else ""
+    shorter = phrase[:-1] if claim in ("true", "false") else phrase
+    match = matched(shorter, names, names.propositions)
+    name = match.name if match else new_name(shorter)
+    part = Part(e.Name(name), places(phrase), {name: text(shorter)})
+    return part.negated() if (match is not None and match.negated) != (claim == "false") else part
 
 
 def _in_parentheses(phrase: Phrase, names: Vocabulary) -> Part | None:

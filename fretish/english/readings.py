@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 from itertools import product
 
@@ -86,8 +86,7 @@ def _all(phrase: Phrase, names: Vocabulary) -> Iterator[Reading]:
     for response in responses(parts, names):
         choices = [tuple(_uses(clause, names, response.negated)) for clause in parts.clauses]
         for chosen in product(*choices):
-            frame = _frame(parts.clauses, chosen, response)
-            if frame is not None:
+            for frame in _frames(parts.clauses, chosen, response):
                 yield from _sentences(phrase, response, frame)
 
 
@@ -212,6 +211,34 @@ class _Frame:
     used: Places
     names: Mapping[str, str]
     demands: tuple[str, ...]
+    premise: e.Expression | None = None
+    """What must be true at the trigger for the response to be demanded."""
+
+
+def _frames(
+    clauses: Sequence[Clause], uses: tuple[_Use, ...], response: Response
+) -> Iterator[_Frame]:
+    """The uses of all clauses together; none if they do not fit.
+
+    "R if p, at the time of E" is "upon E & p", or "upon E: p -> R".
+    """
+    whole = _frame(clauses, uses, response)
+    if whole is None:
+        return
+    yield whole
+    pairs = [*zip(clauses, uses, strict=True)]
+    events = [use for clause, use in pairs if clause.role is Role.UPON]
+    others = [use for _, use in pairs if use.condition and use not in events]
+    if events and others and not any(clause.is_or or clause.time for clause in clauses):
+        upon = _frame(
+            [clause for clause, use in pairs if use not in others],
+            tuple(use for use in uses if use not in others),
+            response,
+        )
+        if upon is not None:
+            premise = joined([use.part for use in others if use.part], e.both)
+            said = {**upon.names, **premise.names}
+            yield replace(upon, premise=premise.expression, used=whole.used, names=said)
 
 
 def _frame(clauses: Iterable[Clause], uses: tuple[_Use, ...], response: Response) -> _Frame | None:
@@ -308,13 +335,16 @@ def _demands(response: Response, frame: _Frame) -> Iterator[_Demand]:
     negated = response.negated != only
     expression = part.negated().expression if negated else part.expression
     for adverb in response.adverbs or (None,):
-        for kind, timing in _timings(adverb, frame, negated=negated, is_state=response.is_state):
+        for kind, timing in _timings(adverb, frame, negated=negated):
             own = condition
             if condition and kind and kind is not condition.kind:
                 continue
             if only and condition and timing == _NEXT:
                 continue
-            if timing == _NEVER:
+            if frame.premise is not None:
+                if timing != _NEVER:
+                    yield own, timing, e.Implies(frame.premise, expression)
+            elif timing == _NEVER:
                 yield own, _NEVER, _forbidden(part, negated)
             else:
                 yield own, timing, expression
@@ -335,9 +365,7 @@ def _lasting(response: Response, frame: _Frame, duration: s.Duration) -> Iterato
 _Timing = tuple[s.ConditionKind | None, s.Timing]
 
 
-def _timings(
-    adverb: Adverb | None, frame: _Frame, *, negated: bool, is_state: bool
-) -> Iterator[_Timing]:
+def _timings(adverb: Adverb | None, frame: _Frame, *, negated: bool) -> Iterator[_Timing]:
     """The timings that the words allow; with the kind of condition that each needs."""
     if frame.timing is not None:
         yield None, frame.timing
@@ -364,8 +392,7 @@ def _timings(
             yield None, _NEXT
             if not negated:
                 yield None, _EVENTUALLY
-            if negated or is_state:
-                yield _TRIGGER, _NEVER if negated else _ALWAYS
+            yield _TRIGGER, _NEVER if negated else _ALWAYS
 
 
 def _always(frame: _Frame, negated: bool) -> Iterator[_Timing]:

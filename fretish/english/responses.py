@@ -26,10 +26,11 @@ class Adverb(Enum):
 _ADVERBS = {
     Adverb.ALWAYS: "always; at all times; at any time; continuously; permanently; constantly; "
     "at every tick; at every step; in all cases; forever; for ever",
-    Adverb.EVENTUALLY: "eventually; sometime; at some point; at some time; sooner or later",
+    Adverb.EVENTUALLY: "eventually; at least once; sometime; at some point; at some time; "
+    "sooner or later",
     Adverb.IMMEDIATELY: "immediately; at once; instantly; directly; simultaneously; right away; "
-    "without delay; initially; at the same time; straight away; at startup; at start up; at the start; "
-    "at the beginning",
+    "without delay; initially; at the same time; straight away; at startup; at start up; "
+    "at the start; at the beginning",
     Adverb.NEXT: "at the next tick; at the next step; at the next timepoint; in the next step; "
     "in the next tick; next",
     Adverb.FINALLY: "finally; at the end; at the last timepoint",
@@ -45,7 +46,11 @@ _ADVERB_WORDS = sorted(
 _NEVER = frozenset({"not", "never"})
 _ENSURING = ("ensure", "guarantee", "satisfy", "assure", "verify")
 _STATES = COPULAS | {"exceed", "equal", "hold", "<", "<=", ">", ">=", "="}
-_CAUSING = frozenset(map(stem, "latch cause trigger initiate imply result lead".split()))
+_EVENT_CAUSES = frozenset(
+    {("be", "followed", "by"), ("result", "in"), ("lead", "to"), ("imply",), ("implies",)}
+)
+"""What only events do."""
+_CAUSES = (*_EVENT_CAUSES, ("latch",), ("cause",), ("trigger",), ("initiate",))
 _HOLDS = (("be", "true"), ("hold",), ("be", "the", "case"))
 _CHANGES = frozenset(map(stem, "change switch transition go move transit".split()))
 DEFAULT_COMPONENT = "system"
@@ -63,8 +68,6 @@ class Response:
     """The places of adverbs, signs and the component."""
     condition: Part | None = None
     """A condition that the main clause holds: the event of "exceeding the limit shall stop it"."""
-    is_state: bool = False
-    """Whether the demand is about a state, not an action."""
 
 
 def responses(parts: Outline, names: Vocabulary) -> tuple[Response, ...]:
@@ -96,7 +99,7 @@ def responses(parts: Outline, names: Vocabulary) -> tuple[Response, ...]:
         of_component = of_component if claimed == "ensured" else frozenset()
         component = component if of_component or component in names.components else _default(names)
     return tuple(
-        Response(component, part, negated, adverbs, used | of_component, None, is_state)
+        Response(component, part, negated, adverbs, used | of_component)
         for part in propositions(phrase, names)
     )
 
@@ -219,12 +222,10 @@ def _cause(
     """The event, the effect, and the causing verb of "exceeding the limit shall trigger a stop"."""
     if not predicate or not content(subject):
         return None
-    causing = stem(predicate[0].text) in _CAUSING and len(predicate) > 1
+    said = lower(predicate)
+    length = next((len(verb) for verb in _CAUSES if said[: len(verb)] == verb), 0)
     gerund = subject[0].lower.endswith("ing") and len(subject) > 1
-    if not gerund or lower(subject)[0] in names.components:
+    is_component = _component(subject, names)[0] in names.components
+    if is_component or not (gerund or said[:length] in _EVENT_CAUSES) or length == len(said):
         return None
-    event = propositions(subject, names)[0]
-    if not causing:
-        return event, predicate, frozenset()
-    preposition = 1 if predicate[1].lower in ("in", "to") else 0
-    return event, predicate[1 + preposition :], places(predicate[: 1 + preposition])
+    return propositions(subject, names)[0], predicate[length:], places(predicate[:length])
