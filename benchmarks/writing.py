@@ -1,10 +1,11 @@
 """How often `fretc write` offers the right reading of published requirements in plain English.
 
-    python -m benchmarks.writing FRET [--names]    # FRET: a clone of NASA-SW-VnV/fret
+    python -m benchmarks.writing FRET    # FRET: a clone of NASA-SW-VnV/fret
 
 The case studies of FRET hold requirements in English, as their rationale, beside FRETish. A reading
 is right if its sentence has the same verdict on all finite runs as the published one, up to a
-renaming of its atoms: one name for each comparison or proposition, where `x > 5` is `!(x <= 5)`.
+renaming of its atoms: one name for each comparison or proposition, where `x > 5` is `!(x <= 5)`. A
+name may stand for a comparison as it is written.
 The rules were made with one half, chosen by a fixed seed; the other half measures them.
 """
 
@@ -14,6 +15,7 @@ import argparse
 import json
 import random
 from collections.abc import Iterator, Mapping, Sequence
+from enum import Enum
 from itertools import permutations
 from pathlib import Path
 
@@ -83,31 +85,49 @@ def _names(variables: Sequence[Mapping[str, str]], project: str) -> Vocabulary:
     return Vocabulary(tuple(dict.fromkeys(truths)), tuple(dict.fromkeys(others)))
 
 
-def is_offered(pair: Pair, *, named: bool) -> bool:
-    """Whether a reading of the text is the published sentence.
+class Criterion(Enum):
+    """When a reading counts as the published sentence."""
 
-    Args:
-        pair: a published requirement.
-        named: whether the variables of its project are known.
-    """
+    NEW_NAMES = "names new"
+    """No name is known; the same up to a renaming of atoms."""
+    KNOWN_NAMES = "names known"
+    """The variables of the project are known; the same up to a renaming of atoms."""
+    SAME_NAMES = "same names"
+    """The variables of the project are known, and the atoms are the same."""
+
+
+def is_offered(pair: Pair, criterion: Criterion) -> bool:
+    """Whether a reading of the text is the published sentence."""
     published = parse(Source("published", pair.fretish.strip()).span())
     if not isinstance(published, s.Sentence):
         return False
-    names = pair.names if named else Vocabulary()
+    names = Vocabulary() if criterion is Criterion.NEW_NAMES else pair.names
     offered = (r for text in demands(pair.english) for r in readings(text, names))
-    return any(is_same(published, reading.sentence) for reading in offered)
+    exact = criterion is Criterion.SAME_NAMES
+    return any(is_same(published, reading.sentence, exact=exact) for reading in offered)
 
 
-def is_same(published: s.Sentence, other: s.Sentence) -> bool:
-    """Whether two sentences have the same verdicts up to a renaming of their atoms."""
+def is_same(published: s.Sentence, other: s.Sentence, *, exact: bool = False) -> bool:
+    """Whether two sentences have the same verdicts on all finite runs.
+
+    Args:
+        published: a sentence.
+        other: another one.
+        exact: whether its atoms must be the same; else they are renamed if there are as many. A
+            name may stand for a comparison as it is written.
+    """
     atoms, own = _atoms(published), _atoms(other)
-    if len(atoms) != len(own) or len(atoms) > MOST_ATOMS:
+    if len(atoms) != len(own) or len(atoms) > MOST_ATOMS or (exact and {*atoms} != {*own}):
         return False
-    first = _formalized(published, {atom: f"p{i}" for i, atom in enumerate(atoms)})
+    first = _formalized(published, {atom: e.Name(f"p{i}") for i, atom in enumerate(atoms)})
     if first is None:
         return False
-    for order in permutations(range(len(own))):
-        renamed = _formalized(other, {atom: f"p{order[i]}" for i, atom in enumerate(own)})
+    for order in (tuple(own),) if exact else permutations(atoms):
+        names = {
+            atom: _signed(f"p{[*atoms].index(theirs)}", own[atom], atoms[theirs])
+            for atom, theirs in zip(own, order, strict=True)
+        }
+        renamed = _formalized(other, names)
         if renamed is None:
             return False
         apart = difference(first, renamed, SECONDS)
@@ -116,7 +136,15 @@ def is_same(published: s.Sentence, other: s.Sentence) -> bool:
     return False
 
 
-def _formalized(tree: s.Sentence, names: Mapping[str, str]) -> FormalizedRequirement | None:
+def _signed(name: str, own: bool | None, theirs: bool | None) -> e.Expression:
+    """The name of an atom; negated if it stands for a comparison that is written as a negation."""
+    negated = (own is None) != (theirs is None) and bool(own or theirs)
+    return e.Not(e.Name(name)) if negated else e.Name(name)
+
+
+def _formalized(
+    tree: s.Sentence, names: Mapping[str, e.Expression]
+) -> FormalizedRequirement | None:
     """The sentence with a name for each atom; None if fretc has no meaning for it."""
     plain = s.with_expressions(tree, lambda part: _renamed(part, names))
     text = sentence(plain)
@@ -126,11 +154,11 @@ def _formalized(tree: s.Sentence, names: Mapping[str, str]) -> FormalizedRequire
 _NEGATED = {">": "<=", ">=": "<", "!=": "="}
 
 
-def _renamed(part: e.Expression, names: Mapping[str, str]) -> e.Expression:
+def _renamed(part: e.Expression, names: Mapping[str, e.Expression]) -> e.Expression:
     if isinstance(part, e.Comparison) and part.op in _NEGATED:
-        return e.Not(e.Name(names[_key(part)]))
+        return e.Not(names[_key(part)])
     if _key(part) in names:
-        return e.Name(names[_key(part)])
+        return names[_key(part)]
     if isinstance(part, e.Call):
         *bounds, last = part.args
         return e.Call(part.name, (*map(_in_ticks, bounds), _renamed(last, names)))
@@ -142,26 +170,29 @@ def _in_ticks(bound: e.Expression) -> e.Expression:
     return e.Number(bound.digits) if isinstance(bound, e.Quantity) else bound
 
 
-def _atoms(tree: s.Sentence) -> tuple[str, ...]:
-    found: dict[str, None] = {}
+def _atoms(tree: s.Sentence) -> dict[str, bool | None]:
+    """Atom → None for a name; for a comparison, whether its first form is a negation."""
+    found: dict[str, bool | None] = {}
 
     def collect(part: e.Expression) -> e.Expression:
-        found.update(dict.fromkeys(_keys(part)))
+        for atom in _parts(part):
+            sign = atom.op in _NEGATED if isinstance(atom, e.Comparison) else None
+            found.setdefault(_key(atom), sign)
         return part
 
     s.with_expressions(tree, collect)
-    return tuple(found)
+    return found
 
 
-def _keys(part: e.Expression) -> Iterator[str]:
+def _parts(part: e.Expression) -> Iterator[e.Expression]:
     match part:
         case e.Call(name, args) if name in e.COUNTING:
-            yield from _keys(args[-1])
+            yield from _parts(args[-1])
         case e.Name() | e.Comparison() | e.Call():
-            yield _key(part)
+            yield part
         case _:
             for child in e.children(part):
-                yield from _keys(child)
+                yield from _parts(child)
 
 
 def _key(part: e.Expression) -> str:
@@ -180,10 +211,10 @@ def main() -> None:
     parser.add_argument("fret", type=Path, metavar="FRET", help="a clone of FRET's repository")
     fret = parser.parse_args().fret
     for what, half in zip(("made with", "measured"), halves(pairs(fret)), strict=True):
-        for named in (True, False):
-            right = sum(is_offered(pair, named=named) for pair in half)
-            known = "names known" if named else "names new"
-            print(f"{what:10} {known:12} {right:3} of {len(half)}  {right / len(half):.0%}")
+        for criterion in Criterion:
+            right = sum(is_offered(pair, criterion) for pair in half)
+            share = f"{right:3} of {len(half)}  {right / len(half):.0%}"
+            print(f"{what:10} {criterion.value:12} {share}")
 
 
 if __name__ == "__main__":

@@ -153,6 +153,8 @@ def _write(
     """Print a text's readings, ask, and write the chosen one; returns the exit status."""
     if output_format == "text":
         click.echo("\n".join(visible(line) for line in choice.lines))
+    if choice.warning is not None:
+        print_diagnostics([choice.warning])
     if choice.left_out:
         print_diagnostics([diagnostic("words_left_out", words="`, `".join(choice.left_out))])
     if choose is not None and choose > len(choice.readings):

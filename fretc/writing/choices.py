@@ -14,7 +14,7 @@ from fretc.writing.questions import Comparison, Question, compare
 from fretc.writing.text_output import in_words, left_out, listed, names_of, record, table
 from fretish.bindings.declarations import Declarations
 from fretish.classes.frozen import dataclass
-from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
 from fretish.documents import RequirementEntry
@@ -41,6 +41,8 @@ class Choice:
     undecided: str
     """Why some readings were not compared; empty: all were."""
     declarations: Declarations | None
+    warning: Diagnostic | None = None
+    """F312 if durations are read as ticks because no clock is declared."""
 
     @property
     def left_out(self) -> tuple[str, ...]:
@@ -101,15 +103,18 @@ def choice(
         return diagnostic("no_reading", text=english)
     usable: list[tuple[Reading, FormalizedRequirement]] = []
     errors: list[Diagnostic] = []
+    warnings: list[Diagnostic] = []
     for reading in offered:
         requirement, remarks = formalize(_entry(reading), declarations)
         if requirement is None:
             errors += [each for each in remarks if each.is_error]
         else:
             usable.append((reading, requirement))
+            warnings += [each for each in remarks if each.code is Code.NO_CLOCK]
     if not usable:
         return errors[0]
-    return _merged(english, usable, declarations)
+    merged = _merged(english, usable, declarations)
+    return replace(merged, warning=next(iter(warnings), None))
 
 
 def _merged(

@@ -335,11 +335,11 @@ def _starts(words: Phrase) -> Iterator[tuple[int, Clause]]:
 
 
 def _begins(said: tuple[str, ...], index: int, marker: tuple[tuple[str, ...], Role]) -> bool:
-    """Whether a marker begins a clause: not the "in" of a mode that is entered or left."""
-    if marker[0] != ("in",):
-        return True
-    before = said[:index]
-    return bool(before) and before[-1] not in COPULAS and index > 0
+    """Whether a marker begins a clause: not "at once", nor the "in" of "is in X mode"."""
+    before = said[index - 1] if index else ""
+    if marker[0] == ("once",):
+        return before not in ("at", "least", "only")
+    return marker[0] != ("in",) or (bool(before) and before not in COPULAS)
 
 
 def _time_clause(words: Phrase, index: int) -> tuple[Clause, int] | None:

@@ -141,7 +141,10 @@ def _left(phrase: Phrase, names: Vocabulary) -> Part:
         variable = matched(phrase, names, names.propositions)
         exact = variable is not None and len(names.stems[variable.name]) > 1
         name = variable.name if variable and exact else new_name(phrase)
-    return Part(e.Name(name), places(phrase), {name: text(phrase)})
+    said = phrase
+    while said and said[-1].lower in COPULAS:
+        said = said[:-1]
+    return Part(e.Name(name), places(phrase), {name: text(said or phrase)})
 
 
 def _apposition(phrase: Phrase) -> str:

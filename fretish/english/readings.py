@@ -16,7 +16,16 @@ from fretish.english.parts import Part, joined
 from fretish.english.phrases import propositions
 from fretish.english.responses import Adverb, Response, responses
 from fretish.english.vocabulary import Vocabulary, lacking
-from fretish.english.words import Phrase, Places, carries_meaning, places, sentences, text, words
+from fretish.english.words import (
+    PUNCTUATION,
+    Phrase,
+    Places,
+    carries_meaning,
+    places,
+    sentences,
+    text,
+    words,
+)
 from fretish.parser import parse
 from fretish.printer import sentence as printed
 
@@ -311,9 +320,9 @@ def _left_out(phrase: Phrase, used: Places) -> tuple[str, ...]:
     for word in phrase:
         if word.start in used:
             runs.append(())
-        elif carries_meaning(word):
+        elif word.text not in PUNCTUATION:
             runs[-1] = (*runs[-1], word)
-    return tuple(text(run) for run in runs if run)
+    return tuple(text(run) for run in runs if any(map(carries_meaning, run)))
 
 
 _Demand = tuple[s.Condition | None, s.Timing, e.Expression]
