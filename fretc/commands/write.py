@@ -23,6 +23,7 @@ from fretc.terminal.output import (
     EXIT_OK,
     EXIT_USAGE,
     fail,
+    fail_at_end,
     or_fail,
     print_diagnostics,
     print_status,
@@ -117,15 +118,22 @@ def _project(folder: str, bindings: str | None) -> tuple[Declarations | None, Vo
     from fretish.english.vocabulary import vocabulary
 
     exists = os.path.exists(folder)
-    files = requirement_files(folder) if exists else []
-    if isinstance(files, Diagnostic) or is_given("requirements"):
-        files = or_fail(files) if is_given("requirements") and not exists else files
+    files = requirement_files(folder) if exists or is_given("requirements") else []
+    if isinstance(files, Diagnostic) and not exists:
+        fail(files)
     paths = [] if isinstance(files, Diagnostic) else files
-    project = load(
-        paths, bindings or (sibling_path(folder, BINDINGS) if exists else None), reads=()
-    )
+    path = bindings or (sibling_path(folder, BINDINGS) if exists else None)
+    project = load(paths, path, reads=())
+    wrong = [each for each in project.diagnostics if each.is_error and _is_in(each, path)]
+    print_diagnostics(wrong)
+    if wrong:
+        fail_at_end()
     components = [each.sentence.component for each in project.formalized]
     return project.declarations, vocabulary(project.declarations, components)
+
+
+def _is_in(error: Diagnostic, path: str | None) -> bool:
+    return error.span is not None and error.span.source.name == path
 
 
 def _choice(english: str, names: Vocabulary, declarations: Declarations | None) -> Choice:

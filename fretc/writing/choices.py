@@ -22,8 +22,8 @@ from fretish.english.readings import Reading
 from fretish.english.readings import readings as all_readings
 from fretish.english.vocabulary import Vocabulary
 
-SECONDS = 2.0
-"""CPU seconds for each pair of readings."""
+SECONDS = 20.0
+"""CPU seconds for the comparison of all readings."""
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from compiler.files.records import replace as with_fields
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.evaluation import evaluate
+from fretc.analysis.arena.budget import Budget
 from fretc.testing.runs import DistinguishingRun, difference
 from fretc.testing.suite import Repeat
 from fretc.testing.words import RunColumns, judged
@@ -50,8 +51,9 @@ def compare(readings: Sequence[FormalizedRequirement], seconds: float) -> Compar
 
     Args:
         readings: the readings; of several with the same meaning the first is kept.
-        seconds: CPU seconds for each pair.
+        seconds: CPU seconds for all pairs together.
     """
+    budget = Budget(seconds)
     kept: list[int] = []
     same: list[tuple[int, int]] = []
     runs: list[RunColumns] = []
@@ -62,11 +64,12 @@ def compare(readings: Sequence[FormalizedRequirement], seconds: float) -> Compar
         for earlier in kept:
             if any(_tells(readings[earlier], reading, run) for run in (*runs, *found)):
                 continue
-            apart = difference(readings[earlier], reading, seconds, readings)
+            apart = difference(readings[earlier], reading, budget.left, readings)
             if isinstance(apart, DistinguishingRun):
                 found.append(_decisive(readings[earlier], reading, apart.word))
             elif apart.why:
-                undecided = apart.why
+                late = f"it takes more than {seconds:g} CPU seconds"
+                undecided = apart.why if budget.left else late
             else:
                 twin = earlier
                 break

@@ -372,6 +372,8 @@ def _time_clause(words: Phrase, index: int) -> tuple[Clause, int] | None:
 def divided(text: str) -> tuple[str, ...]:
     """The demands of a sentence: "it shall start when a and stop when b" has two."""
     phrase = words(text)
+    if len(phrase) > _MOST_WORDS:
+        return (text,)
     parts = outline(phrase)
     for clause, following in pairwise(parts.after):
         said = lower(clause.words)
@@ -386,4 +388,5 @@ def divided(text: str) -> tuple[str, ...]:
 
 
 _SHORT = 3
+_MOST_WORDS = 200
 _MOMENTS = (("at", "the", "time", "of"), ("at", "the", "moment", "when"))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
-from itertools import product
+from itertools import islice, product
 
 from fretish import expressions as e
 from fretish import syntax as s
@@ -31,6 +31,10 @@ from fretish.printer import sentence as printed
 
 MOST = 24
 """The largest number of readings of a sentence."""
+MOST_WORDS = 200
+"""A longer sentence has no reading."""
+_MOST_TRIED = 256
+"""The largest number of combinations of clauses that are tried."""
 _IMMEDIATELY, _NEXT, _ALWAYS = s.Immediately(), s.Next(), s.Always()
 _EVENTUALLY, _NEVER = s.Eventually(), s.Never()
 _TIMED = (Role.WITHIN, Role.FOR, Role.MORE_THAN, Role.AFTER_TIME, Role.EVERY)
@@ -71,13 +75,13 @@ def readings(text: str, names: Vocabulary) -> tuple[Reading, ...]:
         names: the names of the project.
 
     Returns:
-        Readings with different sentences; none if the text demands nothing.
+        Readings with different sentences; none if the text demands nothing, or is too long.
     """
     already = parse(Source("<text>", text).span())
     if isinstance(already, s.Sentence):
         return (Reading(already),)
     phrase = words(text)
-    if not any(carries_meaning(word) for word in phrase):
+    if len(phrase) > MOST_WORDS or not any(carries_meaning(word) for word in phrase):
         return ()
     distinct: dict[str, Reading] = {}
     for reading in _all(phrase, names):
@@ -94,7 +98,7 @@ def _all(phrase: Phrase, names: Vocabulary) -> Iterator[Reading]:
         return
     for response in responses(parts, names):
         choices = [tuple(_uses(clause, names, response.negated)) for clause in parts.clauses]
-        for chosen in product(*choices):
+        for chosen in islice(product(*choices), _MOST_TRIED):
             for frame in _frames(parts.clauses, chosen, response):
                 yield from _sentences(phrase, response, frame)
 

@@ -133,11 +133,9 @@ def _claim(subject: Phrase, predicate: Phrase, names: Vocabulary) -> tuple[bool,
     if said[:1] and said[0] in _STATES and content(subject):
         return True, (*subject, *predicate), ""
     whole = (*subject, *predicate)
-    component, _ = _component(subject, names)
     known = matched(whole, names, names.propositions)
     alone = matched(predicate, names, names.propositions)
-    foreign = len(names.components) == 1 and component not in names.components
-    if content(subject) and ((known and not alone) or (foreign and not alone)):
+    if content(subject) and known and not alone:
         return False, whole, "named"
     return False, predicate or subject, ""
 

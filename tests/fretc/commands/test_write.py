@@ -163,3 +163,17 @@ def test_the_readings_as_json_have_the_runs_that_distinguish_them(fretc: Fretc) 
     assert [each["sentence"] for each in text["readings"]] == [FIRST, SECOND]
     assert {tuple(each["allowed"]) for each in text["questions"]} >= {(0,)}
     assert text["readings"][0]["names"] == {"battery_low": "the battery is low", "return": "return"}
+
+
+def test_an_error_in_the_bindings_is_reported_and_the_text_is_read(fretc: Fretc) -> None:
+    write("requirements/bindings.toml", '[clock]\ntick = "100 ms"\n[signal.v]\npath = "v"\n')
+    run = fretc("write", "the robot must never beep")
+    assert run.status == 2
+    assert "requirements/bindings.toml" in run.err
+    assert "the robot shall never satisfy beep" in run.out
+
+
+def test_a_folder_that_is_named_must_exist(fretc: Fretc) -> None:
+    run = fretc("write", "the robot must never beep", "--requirements", "nowhere")
+    assert (run.status, run.out) == (2, "")
+    assert "nowhere" in run.err

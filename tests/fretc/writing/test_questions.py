@@ -187,3 +187,11 @@ def test_a_shortened_run_has_the_first_ticks() -> None:
     assert allows(found.requirements[0], shortened(longest, longest.ticks)) is allows(
         found.requirements[0], longest
     )
+
+
+def test_readings_that_take_too_long_are_kept_and_it_is_said() -> None:
+    texts = ("when p the sw shall within 3 ticks satisfy q", "whenever p the sw shall satisfy q")
+    compared = compare([requirement(text) for text in texts], 0)
+    assert compared.kept == (0, 1)
+    assert compared.questions == ()
+    assert compared.undecided == "it takes more than 0 CPU seconds"

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fretish.diagnostics.source import Source
-from fretish.english.readings import demands, readings
+from fretish.english.readings import MOST, demands, readings
 from fretish.english.vocabulary import Vocabulary
 from fretish.parser import parse
 from fretish.printer import sentence
@@ -196,6 +196,12 @@ def test_a_text_has_a_demand_for_each_sentence_and_each_verb_with_a_condition() 
 @pytest.mark.parametrize("text", ["", "the", "...", "(,)"])
 def test_a_text_without_content_has_no_reading(text: str) -> None:
     assert readings(text, NEW) == ()
+
+
+def test_a_long_text_is_not_read_and_many_clauses_are_tried_up_to_a_limit() -> None:
+    assert readings("the robot must stop when " + "a is on and " * 2000 + "b is on", NEW) == ()
+    many = "the robot must stop" + " when a is on" * 30
+    assert len(readings(many, NEW)) <= MOST
 
 
 # Any text ----------------------------------------------------------------------------------------
