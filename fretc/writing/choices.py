@@ -41,6 +41,8 @@ class Choice:
     undecided: str
     """Why some readings were not compared; empty: all were."""
     declarations: Declarations | None
+    unusable: tuple[tuple[Reading, Diagnostic], ...] = ()
+    """Readings that cannot be formalized, with the error."""
     warning: Diagnostic | None = None
     """F312 if durations are read as ticks because no clock is declared."""
 
@@ -60,7 +62,11 @@ class Choice:
             for each in self.questions
         ]
         meanings = [in_words(requirement) for requirement in self.requirements]
-        return record(self.english, self.readings, meanings, questions, self.undecided)
+        unusable = [
+            {"sentence": reading.text, "error": error.message} for reading, error in self.unusable
+        ]
+        whole = record(self.english, self.readings, meanings, questions, self.undecided)
+        return whole | {"unusable": unusable}
 
     @property
     def lines(self) -> Iterator[str]:
@@ -76,6 +82,8 @@ class Choice:
                     yield f"   the same: {other.text}"
         yield ""
         yield from names_of(self.readings)
+        for unusable, error in self.unusable:
+            yield f"not compared: {unusable.text}: {error.message}"
         if self.undecided:
             yield f"not all readings were compared: {self.undecided}"
 
@@ -102,19 +110,19 @@ def choice(
     if not offered:
         return diagnostic("no_reading", text=english)
     usable: list[tuple[Reading, FormalizedRequirement]] = []
-    errors: list[Diagnostic] = []
+    errors: list[tuple[Reading, Diagnostic]] = []
     warnings: list[Diagnostic] = []
     for reading in offered:
         requirement, remarks = formalize(_entry(reading), declarations)
         if requirement is None:
-            errors += [each for each in remarks if each.is_error]
+            errors.append((reading, next(each for each in remarks if each.is_error)))
         else:
             usable.append((reading, requirement))
             warnings += [each for each in remarks if each.code is Code.NO_CLOCK]
     if not usable:
-        return errors[0]
+        return errors[0][1]
     merged = _merged(english, usable, declarations)
-    return replace(merged, warning=next(iter(warnings), None))
+    return replace(merged, unusable=tuple(errors), warning=next(iter(warnings), None))
 
 
 def _merged(

@@ -4,85 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from enum import Enum, auto
 from itertools import pairwise
 
 from fretish.classes.frozen import dataclass
-from fretish.english.amounts import Time, time_at
+from fretish.english.markers import Clause, Role, marker, time_clause
 from fretish.english.words import COPULAS, Phrase, lower, words
 
-
-class Role(Enum):
-    """What a clause is for."""
-
-    WHEN = auto()
-    """`when`, `if`: at the ticks at which it becomes true, or at all at which it is true."""
-    WHENEVER = auto()
-    UPON = auto()
-    WHILE = auto()
-    UNLESS = auto()
-    UNTIL = auto()
-    BEFORE = auto()
-    AFTER = auto()
-    EXCEPT = auto()
-    ONLY_WHEN = auto()
-    ONLY_AFTER = auto()
-    ONLY_BEFORE = auto()
-    WITHIN = auto()
-    FOR = auto()
-    MORE_THAN = auto()
-    """`for more than 5 seconds`."""
-    AFTER_TIME = auto()
-    EVERY = auto()
-    """`every 5 seconds`."""
-    IFF = auto()
-    """`if and only if`."""
-    ASIDE = auto()
-    """`regardless of the input`: it demands nothing, and is left out."""
-
-
-_WORDINGS = {
-    Role.WHEN: "when; if; in case; in case of; in the event of; in the event that; provided that; "
-    "provided; given that; in the case of; where",
-    Role.WHENEVER: "whenever; at any time when; any time; always when; always if",
-    Role.UPON: "upon; as soon as; once; every time; each time; the moment; at the moment when; "
-    "at the time of; every time that; on detection of",
-    Role.WHILE: "while; during; as long as; throughout; so long as; whilst; while in; when in; "
-    "if in; whenever in; when operating in; while operating in",
-    Role.UNLESS: "unless",
-    Role.UNTIL: "until; till; up until",
-    Role.BEFORE: "before; prior to",
-    Role.AFTER: "after; following; from the time",
-    Role.EXCEPT: "except when; except while; except if; except in; except during; except",
-    Role.ONLY_WHEN: "only when; only if; only while; only in; only during",
-    Role.ONLY_AFTER: "only after; only once",
-    Role.ONLY_BEFORE: "only before; only until",
-    Role.IFF: "if and only if; exactly when; exactly if; exactly while",
-    Role.ASIDE: "regardless of; irrespective of; independent of; independently of; so that; "
-    "in order to; because; no matter; whatever; even if; although",
-}
-_MARKERS = sorted(
-    (
-        (tuple(wording.split()), role)
-        for role, some in _WORDINGS.items()
-        for wording in some.split(";")
-    ),
-    key=lambda marker: -len(marker[0]),
-)
-_TIMES = (
-    (Role.MORE_THAN, "for more than; for longer than; for durations exceeding; for at most; "
-     "for a time of more than"),
-    (Role.FOR, "for at least; for a period of; for a duration of; for the next; for"),
-    (Role.WITHIN, "within at most; within the next; within a maximum of; within; in less than; "
-     "in at most; no later than; not later than; at most; at the latest; in under; in"),
-    (Role.EVERY, "at least once every; at least every; once every; every"),
-    (Role.AFTER_TIME, "after exactly; after; exactly; at least"),
-)  # fmt: skip
-_TIME_MARKERS = sorted(
-    ((tuple(wording.split()), role) for role, some in _TIMES for wording in some.split(";")),
-    key=lambda marker: -len(marker[0]),
-)
-_SINCE = ("of", "after", "from", "since", "when", "once", "upon", "following")
 MODALS = tuple(
     tuple(modal.split())
     for modal in (
@@ -100,22 +27,7 @@ _ONLY = {
     Role.UNTIL: Role.ONLY_BEFORE,
 }
 """What "shall only ... when" makes of a clause."""
-_MODES = frozenset({"mode", "state", "phase"})
 _DETERMINERS = frozenset("the a an its it this no".split())
-
-
-@dataclass(frozen=True, slots=True)
-class Clause:
-    """A clause with its role; `marker` are the words that say the role."""
-
-    role: Role
-    marker: Phrase
-    words: Phrase = ()
-    time: Time | None = None
-    is_or: bool = False
-    """Whether "or" joins it to the clause before."""
-    is_since: bool = False
-    """Whether `words` are the event from which `time` counts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,6 +44,20 @@ class Outline:
     def clauses(self) -> tuple[Clause, ...]:
         """All clauses, in the order of the text."""
         return (*self.before, *self.after)
+
+
+def outlines(words: Phrase) -> Iterator[Outline]:
+    """The ways to cut a sentence: in "stop when pressed for 5 s", the time is of either verb."""
+    whole = outline(words)
+    yield whole
+    for index, (clause, following) in enumerate(pairwise(whole.after)):
+        timed = following.role in (Role.FOR, Role.MORE_THAN) and not following.is_since
+        if timed and clause.time is None and following.time is not None and not following.words:
+            end = max(following.time.used)
+            start = clause.words[0].start
+            said = tuple(word for word in words if start <= word.start <= end)
+            after = (*whole.after[:index], replace(clause, words=said), *whole.after[index + 2 :])
+            yield replace(whole, after=after)
 
 
 def outline(words: Phrase) -> Outline:
@@ -160,7 +86,7 @@ def _modal(words: Phrase) -> tuple[int, int]:
         if word in ("always", "never"):
             return index, 0
     commas = [i for i, word in enumerate(said) if word in (",", "then")]
-    return (commas[-1] + 1 if commas and _marker(words, 0) else 0), 0
+    return (commas[-1] + 1 if commas and marker(words, 0) else 0), 0
 
 
 def _may_be_modal(said: tuple[str, ...], index: int) -> bool:
@@ -184,7 +110,7 @@ def _prefix(words: Phrase) -> tuple[tuple[Clause, ...], Phrase]:
         first, rest = _without_comma(pieces[0])
         pieces = [first, rest]
     *conditions, subject = pieces
-    timed = _time_clause(subject, 0)
+    timed = time_clause(subject, 0)
     if timed is not None and not timed[0].is_since:
         conditions, subject = [*conditions, subject[: timed[1]]], subject[timed[1] :]
     clauses: list[Clause] = []
@@ -198,7 +124,7 @@ def _prefix(words: Phrase) -> tuple[tuple[Clause, ...], Phrase]:
 
 def _opens(words: Phrase) -> bool:
     """Whether a clause begins with these words."""
-    return _marker(words, 0) is not None or _time_clause(words, 0) is not None
+    return marker(words, 0) is not None or time_clause(words, 0) is not None
 
 
 def _pieces(words: Phrase) -> list[Phrase]:
@@ -216,11 +142,11 @@ def _pieces(words: Phrase) -> list[Phrase]:
 def _without_comma(words: Phrase) -> tuple[Phrase, Phrase]:
     """The clause and the component, where no comma separates them: at the last determiner."""
     said = lower(words)
-    timed = _time_clause(words, 0)
+    timed = time_clause(words, 0)
     if timed is not None and not timed[0].is_since:
         return words[: timed[1]], words[timed[1] :]
-    marker = _marker(words, 0)
-    first = len(marker[0]) if marker else 1
+    found = marker(words, 0)
+    first = len(found[0]) if found else 1
     cuts = [i for i in range(first + 1, len(said)) if said[i] in _DETERMINERS]
     cut = cuts[-1] if cuts else len(words) - 1
     return words[:cut], words[cut:]
@@ -230,11 +156,11 @@ def _inner(words: Phrase) -> list[Clause]:
     """The clauses in a piece that begins with a marker: "when a and while b"."""
     clauses, start, is_or = list[Clause](), 0, False
     said = lower(words)
-    first = _marker(words, 0)
+    first = marker(words, 0)
     index = len(first[0]) if first else 1
     cuts = []
     while index < len(words):
-        found = _marker(words, index)
+        found = marker(words, index)
         joined = said[index - 1] in ("and", "or")
         if found and (joined or found[1] is Role.WHILE or found[0] in _MOMENTS):
             cuts.append((index - joined, index, joined and said[index - 1] == "or"))
@@ -247,25 +173,17 @@ def _inner(words: Phrase) -> list[Clause]:
 
 
 def _clause(words: Phrase, *, is_or: bool) -> Clause:
-    time = _time_clause(words, 0)
+    time = time_clause(words, 0)
     if time is not None:
         clause, end = time
         rest = words[end:]
         return replace(clause, words=rest, is_or=is_or)
-    found = _marker(words, 0)
+    found = marker(words, 0)
     if found is None:
         return Clause(Role.WHEN, (), words, None, is_or)
     length = len(found[0])
     keep = 0 if found[0] != ("in",) else 1
     return Clause(found[1], words[:length], words[max(length, keep) :], None, is_or)
-
-
-def _marker(words: Phrase, index: int) -> tuple[tuple[str, ...], Role] | None:
-    """The marker at a place, the longest."""
-    said = lower(words[index:])
-    if said[:1] == ("in",) and _MODES & {*said} and said[1:2] != ("case",):
-        return ("in",), Role.WHILE
-    return next((m for m in _MARKERS if said[: len(m[0])] == m[0]), None)
 
 
 # After the component ---------------------------------------------------------------------------
@@ -323,47 +241,23 @@ def _starts(words: Phrase) -> Iterator[tuple[int, Clause]]:
         depth += (said[index] == "(") - (said[index] == ")")
         step = 1
         if depth == 0:
-            timed = _time_clause(words, index)
-            found = _marker(words, index)
+            timed = time_clause(words, index)
+            found = marker(words, index)
             if timed is not None:
                 clause, step = timed
                 yield index, clause
-            elif found is not None and _begins(said, index, found):
+            elif found is not None and _begins(said, index, found[0]):
                 step = len(found[0])
                 yield index, Clause(found[1], words[index : index + step])
         index += step
 
 
-def _begins(said: tuple[str, ...], index: int, marker: tuple[tuple[str, ...], Role]) -> bool:
+def _begins(said: tuple[str, ...], index: int, wording: tuple[str, ...]) -> bool:
     """Whether a marker begins a clause: not "at once", nor the "in" of "is in X mode"."""
     before = said[index - 1] if index else ""
-    if marker[0] == ("once",):
+    if wording == ("once",):
         return before not in ("at", "least", "only")
-    return marker[0] != ("in",) or (bool(before) and before not in COPULAS)
-
-
-def _time_clause(words: Phrase, index: int) -> tuple[Clause, int] | None:
-    """The clause of a duration at a place, and its number of words."""
-    said = lower(words[index:])
-    for wording, role in _TIME_MARKERS:
-        if said[: len(wording)] != wording:
-            continue
-        time = time_at(words, index + len(wording))
-        if time is not None:
-            end = time.end - index
-            if (
-                role is Role.AFTER_TIME
-                and wording[-1] != "after"
-                and said[end : end + 1] != ("after",)
-            ):
-                continue
-            marker = words[index : index + len(wording)]
-            since = 1 if said[end : end + 1] and said[end] in _SINCE else 0
-            if since:
-                clause = Clause(role, (*marker, words[index + end]), (), time, is_since=True)
-                return clause, end + since
-            return Clause(role, marker, (), time), end
-    return None
+    return wording != ("in",) or (bool(before) and before not in COPULAS)
 
 
 # Several demands in one sentence ---------------------------------------------------------------

@@ -56,6 +56,12 @@ def _is_new(left: Part, names: Vocabulary) -> bool:
     return {*left.names}.isdisjoint((*names.propositions, *names.numbers))
 
 
+def left_side(phrase: Phrase) -> Phrase:
+    """The words before the operator; empty without a comparison."""
+    sides = _sides(phrase)
+    return sides.left if sides is not None else ()
+
+
 def states_comparison(phrase: Phrase) -> bool:
     """Whether words of comparison stand in the phrase."""
     return _sides(phrase) is not None

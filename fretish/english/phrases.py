@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 
 from fretish import expressions as e
 from fretish.english.amounts import time_at
-from fretish.english.comparisons import comparison, states_comparison
+from fretish.english.comparisons import comparison, left_side, states_comparison
 from fretish.english.parts import Part, joined
 from fretish.english.vocabulary import Vocabulary, content, matched, new_name, valued
 from fretish.english.words import ARTICLES, COPULAS, Phrase, Word, lower, places, text
@@ -16,7 +16,7 @@ _JOINS: dict[str, Callable[[e.Expression, e.Expression], e.Expression]] = {
     "and": e.both,
     "but": e.both,
     "or": e.either,
-    "nor": e.either,
+    "nor": e.both,
 }
 _WITHOUT = "without"
 
@@ -27,8 +27,18 @@ def propositions(phrase: Phrase, names: Vocabulary) -> tuple[Part, ...]:
     lasting = _lasting(phrase, names)
     if lasting:
         return lasting
+    phrase, some = _without_some(phrase)
     items, joins, words = _items(phrase)
+    words = (*words, *some)
     parts = [_signed(item, names) for item in items]
+    if lower(some) == ("neither",):
+        parts[0] = parts[0].negated()
+    parts = [
+        parts[0],
+        *(p.negated() if j == "nor" else p for p, j in zip(parts[1:], joins, strict=True)),
+    ]
+    if lower(some)[-2:] == ("one", "of") or lower(some)[:1] == ("any",):
+        joins = ["or"] * len(joins)
     first = _combined(parts, joins, tight="and").using(places(words))
     if len({*joins} & {"and", "or"}) < 2:
         return (first,)
@@ -37,7 +47,7 @@ def propositions(phrase: Phrase, names: Vocabulary) -> tuple[Part, ...]:
 
 def _combined(parts: list[Part], joins: list[str], tight: str) -> Part:
     """The parts, joined; `tight` binds closer."""
-    kind = {"but": "and", "nor": "or"}
+    kind = {"but": "and", "nor": "and"}
     groups, between = [[parts[0]]], []
     for part, word in zip(parts[1:], joins, strict=True):
         if kind.get(word, word) == tight:
@@ -47,6 +57,21 @@ def _combined(parts: list[Part], joins: list[str], tight: str) -> Part:
             between.append(word)
     inner = [joined(group, _JOINS[tight]) for group in groups]
     return joined(inner, _JOINS["or" if tight == "and" else "and"])
+
+
+def _without_some(phrase: Phrase) -> tuple[Phrase, Phrase]:
+    """The phrase without words that say how its parts are joined, and these words."""
+    said = lower(phrase)
+    for wording in _SOME:
+        if said[: len(wording)] == wording:
+            return phrase[len(wording) :], phrase[: len(wording)]
+    return phrase, ()
+
+
+_SOME = (
+    ("at", "least", "one", "of"), ("one", "of"), ("any", "one", "of"), ("any", "of"),
+    ("all", "of"), ("each", "of"), ("both", "of"), ("neither",),
+)  # fmt: skip
 
 
 def _stripped(phrase: Phrase) -> Phrase:
@@ -152,7 +177,10 @@ def _completed(items: list[Phrase]) -> list[Phrase]:
         at = _copula(item)
         before = _copula(whole[-1]) if whole else None
         after = next((i for i in items[index + 1 :] if _copula(i) is not None), None)
-        if at is None and before and _is_predicate(item):
+        shared = left_side(whole[-1]) if whole else ()
+        if at is None and shared and states_comparison(item) and not left_side(item):
+            item = (*shared, *item)
+        elif at is None and before and _is_predicate(item):
             item = (*whole[-1][: before + 1], *item)
         elif at is None and after is not None and not states_comparison(item):
             item = (*item, *after[_copula(after) or 0 :])

@@ -63,9 +63,10 @@ class Response:
     component: str
     part: Part
     negated: bool
-    adverbs: tuple[Adverb, ...]
+    adverbs: tuple[tuple[Adverb, Places], ...]
+    """The adverbs of time, with the places of their words."""
     used: Places
-    """The places of adverbs, signs and the component."""
+    """The places of signs and of the component."""
     condition: Part | None = None
     """A condition that the main clause holds: the event of "exceeding the limit shall stop it"."""
 
@@ -73,15 +74,15 @@ class Response:
 def responses(parts: Outline, names: Vocabulary) -> tuple[Response, ...]:
     """The ways to read the main clause."""
     subject, none = _without_no(parts.subject)
-    predicate, adverbs, used = _without_adverbs(parts.predicate)
-    subject, more, also = _without_adverbs(subject)
+    predicate, adverbs = _without_adverbs(parts.predicate)
+    subject, more = _without_adverbs(subject)
     predicate, negated, signs = _without_not(predicate)
-    used |= signs | also | places(none) | places(parts.modal)
+    used = signs | places(none) | places(parts.modal)
     adverbs = (*more, *adverbs)
     component, of_component = _component(subject, names)
     negated = negated != bool(none)
     if any(word.lower == "never" and word.start in signs for word in parts.predicate):
-        adverbs = (*adverbs, Adverb.ALWAYS) if Adverb.ALWAYS not in adverbs else adverbs
+        adverbs = adverbs or ((Adverb.ALWAYS, frozenset()),)
     change = _change(subject, predicate, names)
     if change is not None:
         before, after, words = change
@@ -100,8 +101,16 @@ def responses(parts: Outline, names: Vocabulary) -> tuple[Response, ...]:
         component = component if of_component or component in names.components else _default(names)
     return tuple(
         Response(component, part, negated, adverbs, used | of_component)
-        for part in propositions(phrase, names)
+        for whole in propositions(phrase, names)
+        for part in (_distributed(whole) if negated else (whole,))
     )
+
+
+def _distributed(part: Part) -> tuple[Part, ...]:
+    """What "not a and b" may negate: both together, or each."""
+    if isinstance(part.expression, e.And):
+        return part, part.with_expression(e.Or(part.expression.args))
+    return (part,)
 
 
 def _default(names: Vocabulary) -> str:
@@ -141,10 +150,16 @@ def _claim(subject: Phrase, predicate: Phrase, names: Vocabulary) -> tuple[bool,
 
 
 def _without_no(subject: Phrase) -> tuple[Phrase, Phrase]:
-    """The subject without a leading "no"."""
-    if subject and subject[0].lower in ("no", "neither"):
+    """The subject without a leading "no"; "neither a nor b" becomes "a or b"."""
+    if subject and subject[0].lower == "neither":
+        return tuple(_as_or(word) for word in subject[1:]), subject[:1]
+    if subject and subject[0].lower == "no":
         return subject[1:], subject[:1]
     return subject, ()
+
+
+def _as_or(word: Word) -> Word:
+    return Word("or", word.start) if word.lower == "nor" else word
 
 
 def _without_not(predicate: Phrase) -> tuple[Phrase, bool, Places]:
@@ -160,9 +175,9 @@ def _without_not(predicate: Phrase) -> tuple[Phrase, bool, Places]:
     return rest, len(signs) % 2 == 1, places(signs)
 
 
-def _without_adverbs(phrase: Phrase) -> tuple[Phrase, tuple[Adverb, ...], Places]:
-    """The words without adverbs of time."""
-    rest, found, used, index = list[Word](), list[Adverb](), frozenset[int](), 0
+def _without_adverbs(phrase: Phrase) -> tuple[Phrase, tuple[tuple[Adverb, Places], ...]]:
+    """The words without adverbs of time, and these."""
+    rest, found, index = list[Word](), list[tuple[Adverb, Places]](), 0
     said = lower(phrase)
     while index < len(phrase):
         wording, adverb = next(
@@ -173,10 +188,9 @@ def _without_adverbs(phrase: Phrase) -> tuple[Phrase, tuple[Adverb, ...], Places
             rest.append(phrase[index])
             index += 1
         else:
-            found.append(adverb)
-            used |= places(phrase[index : index + len(wording)])
+            found.append((adverb, places(phrase[index : index + len(wording)])))
             index += len(wording)
-    return tuple(rest), tuple(found), used
+    return tuple(rest), tuple(found)
 
 
 def _change(

@@ -23,7 +23,7 @@ from fretc.writing.questions import (
 from fretish import syntax as s
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.english.vocabulary import Vocabulary
-from fretish.expressions import And, Expression, Implies, Name, Not, Or, Truth
+from fretish.expressions import And, Expression, Iff, Implies, Name, Not, Or, Truth
 from tests import meaning
 from tests.each import each
 from tests.emitting import requirement
@@ -60,6 +60,8 @@ def holds(tree: Expression, values: dict[str, bool]) -> bool:
             return all(holds(arg, values) for arg in args)
         case Or(args):
             return any(holds(arg, values) for arg in args)
+        case Iff(left, right):
+            return holds(left, values) is holds(right, values)
         case Implies(left, right):
             return not holds(left, values) or holds(right, values)
         case _:
@@ -198,3 +200,53 @@ def test_readings_that_cannot_be_compared_are_kept_and_the_reason_is_said(
     compared = compare([requirement("the sw shall satisfy p"), requirement("p shall satisfy p")], 9)
     assert (compared.kept, compared.questions) == ((0, 1), ())
     assert compared.undecided == "it is too large"
+
+
+CERTAIN = (
+    # (text, run of "name=bits", whether every reading allows it)
+    ("The lamp must never be on", "lamp_on=010", False),
+    ("The lamp must never be on", "lamp_on=000", True),
+    ("The lamp must always be on", "lamp_on=110", False),
+    ("No lamp shall be on while m is on", "m_on=010 lamp_on=010", False),
+    ("No lamp shall be on while m is on", "m_on=010 lamp_on=101", True),
+    ("If p is on, the lamp must be red within 2 ticks", "p_on=1000 lamp_red=0000", False),
+    ("If p is on, the lamp must be red within 2 ticks", "p_on=1000 lamp_red=0010", True),
+    ("If p is on, the lamp must never be red", "p_on=0100 lamp_red=0100", False),
+    ("The lamp must be red until p is on", "p_on=0010 lamp_red=1100", True),
+    ("The lamp must be red until p is on", "p_on=0010 lamp_red=0000", False),
+    ("The lamp must not be red before p is on", "p_on=0010 lamp_red=0100", False),
+    ("The lamp must be red before p is on", "p_on=0010 lamp_red=0000", False),
+    ("The lamp may only be red when p is on", "p_on=0110 lamp_red=0010", True),
+    ("The lamp may only be red when p is on", "p_on=0110 lamp_red=0001", False),
+    ("The lamp may only be red after p is on", "p_on=0010 lamp_red=1000", False),
+    ("Unless p is on, the lamp must never be red", "p_on=0110 lamp_red=1000", False),
+    ("The lamp must be red if and only if p is on", "p_on=0110 lamp_red=0110", True),
+    ("The lamp must be red if and only if p is on", "p_on=0110 lamp_red=0111", False),
+    ("p must be followed by q within 1 tick", "p=100 q=010", True),
+    ("p must be followed by q within 1 tick", "p=100 q=001", False),
+    ("If neither p nor q is on, it must immediately beep", "p_on=010 q_on=100 beep=001", True),
+    ("If neither p nor q is on, it must immediately beep", "p_on=010 q_on=100 beep=000", False),
+    (
+        "The lamp must be red for more than 2 ticks after p is on",
+        "p_on=10000 lamp_red=11000",
+        False,
+    ),
+    ("The lamp must be red for more than 2 ticks after p is on", "p_on=10000 lamp_red=11110", True),
+    ("It must beep every 2 ticks", "beep=01001001", True),
+    ("It must beep every 2 ticks", "beep=01000010", False),
+)
+
+
+@each("case", CERTAIN)
+@pytest.mark.slow
+def test_no_reading_contradicts_what_the_text_leaves_no_doubt_about(
+    case: tuple[str, str, bool],
+) -> None:
+    text, columns, expected = case
+    bits = dict(part.split("=") for part in columns.split())
+    run = [
+        {name: values[tick] == "1" for name, values in bits.items()}
+        for tick in range(len(next(iter(bits.values()))))
+    ]
+    found = made(text)
+    assert [means(each, run) for each in found.requirements] == [expected] * len(found.readings)
