@@ -16,7 +16,7 @@ ROOT = Path(__file__).parent.parent
 ORDER = """
 monitors.kernel  monitors
 fretish.classes  fretish.system  fretish.diagnostics  fretish.reading  fretish.error_rules  fretish
-fretish.bindings  fretish.bindings.tables
+fretish.bindings  fretish.bindings.tables  fretish.english
 compiler.files  compiler.logic.diagrams  compiler.logic.ordering  compiler.logic.spelling
 compiler.logic  compiler.formalization  compiler.formalization.numbers
 compiler.situations  compiler.project  compiler.agents  compiler.program  compiler.signals
@@ -35,7 +35,7 @@ fretc.verification.javascript  fretc.verification.interceptor
 fretc.verification.loop  fretc.verification.layers  fretc.verification
 fretc.analysis.arena  fretc.analysis.arithmetic  fretc.analysis.games  fretc.analysis.controllers
 fretc.analysis
-fretc.testing  fretc.testing.exports  fretc.testing.conformance  fretc.coverage
+fretc.testing  fretc.testing.exports  fretc.testing.conformance  fretc.writing  fretc.coverage
 fretc.traceability  fretc.attestation  fretc.reproduction
 fretc.report.model  fretc.report.pictures  fretc.report.set_analysis
 fretc.report.sections  fretc.report.front

@@ -264,6 +264,11 @@ class Code(Enum):
     NOT_PUBLISHED = ("F963", "the verdicts of a watch cannot be published")
     DISORDERED = ("F964", "a watched log has messages out of order")
     UNNUMBERED = ("F965", "messages of a watched topic have no number")
+    NO_READING = ("F975", "a text in plain English has no reading")
+    WORDS_LEFT_OUT = ("F976", "no reading contains some words of a text")
+    SEVERAL_READINGS = ("F977", "several readings of a text are left")
+    NO_SUCH_READING = ("F978", "the chosen reading does not exist")
+    ID_NOT_WRITTEN = ("F979", "a requirement cannot have the id for writing it")
     INTERNAL = ("F999", "internal error in fretc")
 
     @property
