@@ -15,6 +15,7 @@ from typing import Any
 
 from compiler.files import log_viewer
 from compiler.files.attribution import FIELDS, NOBODY, Attribution, InvalidField, attribution
+from compiler.files.text_files import is_file
 from compiler.files.text_files import read as read_text
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -73,7 +74,7 @@ def settings(folder: str) -> Settings | Diagnostic:
     for place in places:
         for name, table in ((NAME, ()), (SHARED, _TABLE)):
             path = place / name
-            result = _read(path, places[-1], table) if path.is_file() else None
+            result = _read(path, places[-1], table) if is_file(path) else None
             if result is not None:
                 return result
     return Settings(start)

@@ -172,6 +172,7 @@ def _drifted(
         requirement=requirement.id,
         text=bound.span.text,
         where=where,
+        related=(bound.span,),
     )
 
 
@@ -205,7 +206,7 @@ def broken_tables(
     requirement: FormalizedRequirement, declarations: Declarations
 ) -> Iterator[Diagnostic]:
     """The errors in the tables of propositions and signals that a requirement reads."""
-    for name in requirement.watched:
+    for name in requirement.watched if declarations.mistakes else ():
         yield from _mistakes(name, requirement.stated.get(name), declarations)
 
 

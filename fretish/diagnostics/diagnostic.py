@@ -290,6 +290,8 @@ class Diagnostic:
     """The reason why the project accepts a warning, which is displayed nevertheless."""
     fix: Fix | None = None
     """The fix in `help` as a value, if it replaces a span by a text."""
+    related: tuple[Span, ...] = ()
+    """Other places that the message is about."""
 
     @property
     def is_error(self) -> bool:

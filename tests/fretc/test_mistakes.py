@@ -352,6 +352,7 @@ COMMANDS = {
 }
 NO_PROJECT = {
     "init", "fmt", "import", "info", "trends", "sign", "sbom", "completion", "simulate",
+    "lsp",
 }  # fmt: skip
 """Commands that take no project, or each file of it by itself."""
 
