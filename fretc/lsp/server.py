@@ -13,17 +13,20 @@ import os
 import sys
 from collections.abc import Callable, Mapping
 from contextlib import redirect_stdout
-from typing import BinaryIO, cast
+from typing import Any, BinaryIO, cast
 
 from lsprotocol import types as lsp
 from pygls import uris
-from pygls.exceptions import FeatureNotificationError
+from pygls.exceptions import FeatureNotificationError, JsonRpcException
 from pygls.lsp.server import LanguageServer
 
 from compiler.files.build_id import __version__
-from fretc.lsp.positions import Positions
+from compiler.project.paths import BINDINGS
+from fretc.lsp import outline
+from fretc.lsp.answers import ANSWERS, Answer, RefusalError
 from fretc.lsp.reports import Reports
-from fretc.lsp.session import OpenProject, Session
+from fretc.lsp.session import OpenProject, Session, requirement_folders
+from fretc.lsp.view import View
 from fretish.diagnostics.diagnostic import Code
 from fretish.reading.limits import StoppedError
 
@@ -54,9 +57,13 @@ class Server(LanguageServer):
         """The encoding that the client counts characters in."""
         return lsp.PositionEncodingKind(self.workspace.position_encoding or "utf-16").value
 
-    def positions(self, path: str) -> Positions:
-        """The positions of the present text of a file; of an empty text if it cannot be read."""
-        return Positions(self.session.text(path) or "", self.encoding)
+    def view(self, uri: str) -> View | None:
+        """The file of a URI; None if it is of no project."""
+        path = path_of(uri)
+        project = None if path is None else self.session.project(path)
+        if path is None or project is None:
+            return None
+        return View(path, project, self.session, self.encoding, uri_of)
 
     def report_server_error(self, error: Exception, source: object) -> None:
         """Write F999 in the client's log; the answer to a request has the error besides."""
@@ -169,7 +176,29 @@ def make_server() -> Server:
     server = Server()
     for method, handler in _NOTIFICATIONS.items():
         server.feature(method)(handler)
+    for method, (answer, options) in ANSWERS.items():
+        server.feature(method, options)(_handler(answer))
+    server.feature(lsp.WORKSPACE_SYMBOL)(_workspace_symbols)
     return server
+
+
+def _handler(answer: Answer) -> Callable[[Server, Any], Any]:
+    """The handler that gives an answer; what is refused is an error for the user."""
+
+    def handle(ls: Server, params: Any) -> Any:
+        try:
+            return answer(ls.view, params)
+        except RefusalError as error:
+            raise JsonRpcException(str(error), lsp.LSPErrorCodes.RequestFailed.value) from None
+
+    return handle
+
+
+def _workspace_symbols(ls: Server, params: lsp.WorkspaceSymbolParams) -> list[lsp.WorkspaceSymbol]:
+    folders = {folder for root in ls.session.roots for folder in requirement_folders(root)}
+    folders |= {project.folder for project in ls.session.open_projects()}
+    views = [ls.view(uri_of(os.path.join(folder, BINDINGS))) for folder in sorted(folders)]
+    return outline.workspace_symbols([view for view in views if view is not None], params.query)
 
 
 def _opened(ls: Server, params: lsp.DidOpenTextDocumentParams) -> None:

@@ -18,6 +18,7 @@ from compiler.project.folder import load_folder
 from compiler.project.paths import BINDINGS, HAZARDS
 from compiler.project.project import Project
 from fretc.checking.diagnostics import SideFiles, project_diagnostics, quick_diagnostics
+from fretc.lsp.names import Occurrence, occurrences
 from fretc.terminal.options import default_evidence
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -47,7 +48,8 @@ class OpenProject:
 
     def __init__(self, folder: str, root: str) -> None:
         self.folder, self.root = folder, root
-        self._quick, self._slow = Memory(), Memory()
+        self._quick, self._slow, self._names = Memory(), Memory(), Memory()
+        self._occurrences: list[Occurrence] | None = None
         self._reading: Reading | None = None
         self._everything: tuple[Diagnostic, ...] | None = None
         self._slow_ones: tuple[Diagnostic, ...] = ()
@@ -70,7 +72,7 @@ class OpenProject:
         Args:
             path: the file that has changed; None: it is not known.
         """
-        self._reading = self._everything = None
+        self._reading = self._everything = self._occurrences = None
         if path is not None:
             self._changed.add(path)
 
@@ -140,6 +142,14 @@ class OpenProject:
         if isinstance(evidence, Diagnostic):
             return (*quick_diagnostics(project), evidence)
         return project_diagnostics(project, SideFiles(self.name, evidence))
+
+    def occurrences(self, texts: Mapping[str, str]) -> list[Occurrence]:
+        """All names of the project and where they are; none if it cannot be read."""
+        project = self.reading(texts).project
+        if self._occurrences is None:
+            with self.around(texts), self._names.active():
+                self._occurrences = [] if project is None else occurrences(project, self.name)
+        return self._occurrences
 
     @contextmanager
     def around(self, texts: Mapping[str, str]) -> Iterator[None]:

@@ -260,6 +260,7 @@ class Code(Enum):
     NOT_PUBLISHED = ("F963", "the verdicts of a watch cannot be published")
     DISORDERED = ("F964", "a watched log has messages out of order")
     UNNUMBERED = ("F965", "messages of a watched topic have no number")
+    NOT_RENAMED = ("F966", "a name cannot be renamed")
     INTERNAL = ("F999", "internal error in fretc")
 
     @property

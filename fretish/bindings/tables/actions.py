@@ -15,7 +15,7 @@ from fretish.diagnostics.messages import diagnostic
 
 ROS_TYPE = re.compile(r"(?P<package>[a-z]\w*)/(?P<message>[A-Z]\w*)", re.ASCII)
 """A message type without `msg`, as in ROS 1."""
-_FIELDS = ("topic", "type", "message")
+FIELDS = ("topic", "type", "message")
 _EXAMPLES = {
     "topic": '"/gwendolen_control"',
     "type": '"std_msgs/Bool"',
@@ -38,10 +38,10 @@ class ActionTables(Fields):
 
     def _binding(self, name: str, table: Mapping[str, Any]) -> ActionBinding | None:
         before, at = len(self.notes.diagnostics), ("action", name)
-        self._check_keys(table, _FIELDS, f"[action.{name}]", *at)
+        self._check_keys(table, FIELDS, f"[action.{name}]", *at)
         if ACTION.fullmatch(name) is None:
             self._say(diagnostic("bad_action_name", self.tables.place(*at), name=name))
-        for key in _FIELDS:
+        for key in FIELDS:
             if key not in table:
                 self._say(
                     diagnostic(
