@@ -188,6 +188,8 @@ def unbound_propositions(
     proposed: the nearest name may be another safety claim.
     """
     for name in requirement.watched:
+        if name in declarations.propositions and not declarations.mistakes:
+            continue
         mistakes = _mistakes(name, requirement.stated.get(name), declarations)
         yield from mistakes
         if mistakes or name in declarations.propositions:

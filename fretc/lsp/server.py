@@ -14,6 +14,7 @@ import sys
 from collections.abc import Callable, Mapping
 from contextlib import redirect_stdout
 from typing import Any, BinaryIO, cast
+from weakref import WeakKeyDictionary
 
 from lsprotocol import types as lsp
 from pygls import uris
@@ -49,6 +50,7 @@ class Server(LanguageServer):
         """Path → the diagnostics that the client shows."""
         self.input_waits: Callable[[], bool] = lambda: False
         """Whether a message has come that is not handled yet."""
+        self._reports: WeakKeyDictionary[OpenProject, Reports] = WeakKeyDictionary()
         self._timer: asyncio.TimerHandle | None = None
         self._tokens = 0
 
@@ -115,7 +117,9 @@ class Server(LanguageServer):
         """Send the diagnostics of each file whose diagnostics have changed."""
         files: dict[str, tuple[lsp.Diagnostic, ...]] = {}
         for project in self.session.open_projects():
-            reports = Reports(project, self.session, self.encoding, uri_of).by_path()
+            if project not in self._reports:
+                self._reports[project] = Reports(project, self.session, self.encoding, uri_of)
+            reports = self._reports[project].by_path()
             files |= {path: (*files.get(path, ()), *some) for path, some in reports.items()}
         for path in {**self.published, **files}:
             present = files.get(path, ())
