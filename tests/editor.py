@@ -2,10 +2,12 @@
 
 import asyncio
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from fretc.lsp.server import make_server, uri_of
+from fretc.lsp.session import OpenProject
 
 CAPABILITIES = {
     "workspace": {"workspaceEdit": {"documentChanges": True}},
@@ -86,6 +88,13 @@ class Editor:
             self._server.complete()
 
         self._loop.run_until_complete(complete())
+
+    def answer_while_waiting(self, waits: Callable[[], bool]) -> None:
+        """Let the server ask this function whether a message has come."""
+        self._server.input_waits = waits
+
+    def projects(self) -> list[OpenProject]:
+        return self._server.session.open_projects()
 
     def at(self, path: Path, line: int, character: int) -> dict[str, Any]:
         """The parameters of a request about a position."""

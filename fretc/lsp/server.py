@@ -35,6 +35,7 @@ _SILENCE = 0.3
 """Seconds without a message after which the slow diagnostics are computed."""
 _MANY = 100
 """From so many requirements on the client shows that slow diagnostics are being computed."""
+_REFUSED = lsp.LSPErrorCodes.RequestFailed.value
 _WATCHED = ("**/*.fret", "**/{bindings,hazards,waivers,fretc,pyproject}.toml", "**/fretc.lock")
 
 
@@ -68,7 +69,9 @@ class Server(LanguageServer):
         return View(path, project, self.session, self.encoding, uri_of)
 
     def report_server_error(self, error: Exception, source: object) -> None:
-        """Write F999 in the client's log; the answer to a request has the error besides."""
+        """Write F999 in the client's log, unless a request was refused with a reason."""
+        if isinstance(error, JsonRpcException) and error.code == _REFUSED:
+            return
         text = f"{Code.INTERNAL.number} {Code.INTERNAL.summary}: {type(error).__name__}: {error}"
         self.window_log_message(lsp.LogMessageParams(lsp.MessageType.Error, text))
 
@@ -193,7 +196,7 @@ def _handler(answer: Answer) -> Callable[[Server, Any], Any]:
         try:
             return answer(ls.view, params)
         except RefusalError as error:
-            raise JsonRpcException(str(error), lsp.LSPErrorCodes.RequestFailed.value) from None
+            raise JsonRpcException(str(error), _REFUSED) from None
 
     return handle
 

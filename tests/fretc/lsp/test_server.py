@@ -204,6 +204,10 @@ def test_a_warning_that_needs_a_review_comes_after_a_silence(fretc: Fretc, edito
     assert "F512" in client.codes(paths["r1"])
     client.open(paths["hazards"])
     assert "F512" in client.codes(paths["r1"]), "an edit elsewhere does not make it flicker"
+    client.change(paths["r1"], "\n" + cases.R1)
+    assert "F512" not in client.codes(paths["r1"]), "its place is not known any more"
+    client.settle()
+    assert "F512" not in client.codes(paths["r1"])
 
 
 def test_an_accepted_warning_is_a_hint_with_its_reason(editor: Start) -> None:
