@@ -119,6 +119,7 @@ ELSEWHERE = {
     ("watch", "follow"): "waits for what is still to come",
     ("simulate", ""): "simulates a mission of its own, and reads no project",
     ("completion", ""): "prints a script for a shell",
+    ("lsp", ""): "answers an editor at standard input",
 }
 """What has tests of its own alone, and why."""
 WITH: Mapping[tuple[str, str], Sequence[str]] = {

@@ -39,10 +39,11 @@ fretc.testing  fretc.testing.exports  fretc.testing.conformance  fretc.writing  
 fretc.traceability  fretc.attestation  fretc.reproduction
 fretc.report.model  fretc.report.pictures  fretc.report.set_analysis
 fretc.report.sections  fretc.report.front
-fretc.report.across  fretc.report.page  fretc.report.forms  fretc.report  fretc.trends
+fretc.report.across  fretc.report.page  fretc.report.forms  fretc.report  fretc.checking
+fretc.trends
 simulation.world  simulation.nodes  simulation
 fretc.play  fretc.terminal  fretc.rosbridge  fretc.campaigns  fretc.testing.log_synthesis
-fretc.watch.sources  fretc.watch.zenoh  fretc.watch  fretc.watch.publishing
+fretc.watch.sources  fretc.watch.zenoh  fretc.watch  fretc.watch.publishing  fretc.lsp
 fretc.api  fretc.commands  fretc
 """.split()
 ROOMS = {package.partition(".")[0] for package in ORDER}
@@ -60,6 +61,8 @@ CLICK = {
         for m in ROOT.joinpath("fretc", p).glob("*.py")
     ),
 }
+LSP = {f"fretc/lsp/{module.name}" for module in ROOT.glob("fretc/lsp/*.py")}
+"""The types of the protocol are those of the answers; `server.py` alone sends and receives."""
 DOORS = {
     "lark": {
         "compiler/agents/gwendolen.py",
@@ -138,6 +141,8 @@ DOORS = {
     "zenoh": {"fretc/watch/zenoh/session.py"},
     "websockets": {"fretc/rosbridge/endpoint.py", "fretc/watch/sources/foxglove.py"},
     "foxglove": {"fretc/watch/publishing/foxglove_server.py"},
+    "pygls": {"fretc/lsp/server.py"},
+    "lsprotocol": LSP,
     "click": CLICK,
     # Only Linux and macOS have these, or only Windows.
     "fcntl": {"compiler/targets/ajpf/runner.py", "fretish/system/files.py"},

@@ -264,6 +264,7 @@ class Code(Enum):
     NOT_PUBLISHED = ("F963", "the verdicts of a watch cannot be published")
     DISORDERED = ("F964", "a watched log has messages out of order")
     UNNUMBERED = ("F965", "messages of a watched topic have no number")
+    NOT_RENAMED = ("F966", "a name cannot be renamed")
     NO_READING = ("F975", "a text in plain English has no reading")
     WORDS_LEFT_OUT = ("F976", "no reading contains some words of a text")
     SEVERAL_READINGS = ("F977", "several readings of a text are left")
@@ -299,6 +300,8 @@ class Diagnostic:
     """The reason why the project accepts a warning, which is displayed nevertheless."""
     fix: Fix | None = None
     """The fix in `help` as a value, if it replaces a span by a text."""
+    related: tuple[Span, ...] = ()
+    """Other places that the message is about."""
 
     @property
     def is_error(self) -> bool:

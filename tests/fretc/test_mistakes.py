@@ -353,7 +353,7 @@ COMMANDS = {
 }
 NO_PROJECT = {
     "init", "fmt", "import", "info", "trends", "sign", "sbom", "completion", "simulate",
-    "write",
+    "lsp", "write",
 }  # fmt: skip
 """Commands that take no project, each file of it by itself, or its names alone."""
 

@@ -20,7 +20,7 @@ from fretish.diagnostics.source import Source
 from fretish.reading.limits import with_budget
 from fretish.reading.toml_text import Tables, read
 
-_TABLES = ("clock", "signal", "proposition", "variable", "interceptor", "assume", "map", "run",
+FIELDS = ("clock", "signal", "proposition", "variable", "interceptor", "assume", "map", "run",
            "action", "call", "agent", "fret")  # fmt: skip
 S = TypeVar("S")
 T = TypeVar("T", Signal, Proposition)
@@ -64,7 +64,7 @@ class _TablesReader(Fields):
 
     def declarations(self) -> Declarations:
         tables, notes = self.tables, self.notes
-        self._check_keys(tables.data, _TABLES, "the bindings")
+        self._check_keys(tables.data, FIELDS, "the bindings")
         of_signals = SignalTables(tables, notes)
         signals = self._parts("signal", of_signals.signal)
         of_propositions = PropositionTables(tables, notes, of_signals.known)
