@@ -133,7 +133,7 @@ def test_every_command_reads_a_computed_signal(fretc: Fretc, project: Path) -> N
     bindings.write_text(BINDINGS.replace("y - 1 m", "y - 2 m"))
     diff = fretc("diff")
     assert diff.status != 0
-    assert "y - 2 m" in diff.out
+    assert "distance: hypot(x, y - 1 m → 2 m" in diff.out
 
 
 @pytest.mark.slow
