@@ -12,6 +12,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from fretc.logs.signals.measures import NameValues, number
+from fretish import expressions as e
 from fretish.bindings.functions import ROUNDED
 from monitors.kernel.readings import Single, exact
 from monitors.rounded_functions import ROUNDED_FUNCTIONS, rounded
@@ -122,6 +124,19 @@ def test_no_number_is_an_error(data: st.DataObject, name: str) -> None:
     assert isinstance(value, float)
     if any(map(math.isnan, args)):
         assert math.isnan(value)
+
+
+@given(st.data(), st.sampled_from([*ROUNDED]))
+def test_an_audit_computes_the_same_to_the_last_bit(data: st.DataObject, name: str) -> None:
+    names = [f"n{i}" for i in range(ROUNDED[name].least)]
+    rows = data.draw(st.lists(st.tuples(*[any_number] * len(names)), min_size=1, max_size=5))
+    columns = {each: np.array([row[i] for row in rows]) for i, each in enumerate(names)}
+    tree = e.Call(name, tuple(map(e.Name, names)))
+    found = number(tree, NameValues(len(rows), columns))
+    expected = np.array([ROUNDED_FUNCTIONS[name](*row) for row in rows])
+    known = ~np.isnan(expected)
+    assert (np.isnan(found) == ~known).all()
+    assert (found[known] == expected[known]).all()
 
 
 def turning(x: float, y: float, z: float, w: float) -> NDArray[Any]:

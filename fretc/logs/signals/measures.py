@@ -292,11 +292,29 @@ def _call(name: str, args: Sequence[Term]) -> Term:
 
 
 def _rounded(name: str, args: Sequence[Term]) -> Measure:
-    """A function of `monitors/rounded_functions.py`, number by number, as a node computes it."""
-    function = ROUNDED_FUNCTIONS[name]
+    """A function of `monitors/rounded_functions.py`, with its very results."""
     columns = np.broadcast_arrays(*(_measure(arg).base for arg in args))
+    if name in _OF_ARRAYS:
+        with np.errstate(all="ignore"):
+            return Measure(np.asarray(_OF_ARRAYS[name](*columns), np.float64))
+    function = ROUNDED_FUNCTIONS[name]
     rows = zip(*(column.tolist() for column in columns), strict=True)
     return Measure(np.array([function(*row) for row in rows], np.float64))
+
+
+def _norm(*columns: Numbers) -> Numbers:
+    return np.asarray(np.sqrt(reduce(np.add, (column * column for column in columns))))
+
+
+_OF_ARRAYS: Mapping[str, Callable[..., NDArray[Any]]] = {
+    "sqrt": np.sqrt,
+    "hypot": _norm,
+    "norm": _norm,
+    "sign": np.sign,
+    "floor": np.floor,
+    "ceil": np.ceil,
+}
+"""The functions whose result IEEE 754 defines to the last bit; the others are left to Python."""
 
 
 def _end(function: np.ufunc, left: Term, right: Term) -> Term:
