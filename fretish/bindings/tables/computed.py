@@ -28,6 +28,7 @@ from fretish.reading.toml_text import Tables
 
 _FIELDS = ("value", "unit", "role", "agg")
 _ONLY_RECORDED = frozenset(SIGNAL_FIELDS) - {*_FIELDS}
+_NamedUnit = tuple[str, units.Unit]
 
 
 class ComputedTables(Fields):
@@ -36,7 +37,11 @@ class ComputedTables(Fields):
     def __init__(self, tables: Tables, notes: Notes, signals: Mapping[str, Signal]) -> None:
         """`signals`: all recorded signals with a known unit or with words."""
         super().__init__(tables, notes)
-        self._signals = signals
+        self._measured: dict[str, MeasuredSignal] = dict(signals)
+        """All signals that a value can name; computed ones are added."""
+        self._kinds: dict[str, binding.Kind] = {
+            name: signal.unit.dimension for name, signal in signals.items()
+        }
         self._written = dict(self._expressions())
         self._circular: Set[str] = frozenset()
         """The signals with a circular value, and those that need one."""
@@ -78,55 +83,59 @@ class ComputedTables(Fields):
     def signal(self, name: str, table: Mapping[str, Any]) -> ComputedSignal | None:
         """The signal; None if it has errors."""
         at = ("signal", name)
-        for key in table:
-            if key in _ONLY_RECORDED:
-                self._say(diagnostic("computed_signal_field", self.tables.place(*at, key), key=key))
-        others = {key: table[key] for key in table if key not in _ONLY_RECORDED}
-        self._check_keys(others, _FIELDS, f"[signal.{name}]", *at)
+        self._check_fields(table, *at)
         before = len(self.notes.diagnostics)
         stated = self._unit(table, (*at, "unit"))
         written = self._expression(table, (*at, "value"))
         value = None if written is None else self._value(name, written)
         if written is None or value is None or len(self.notes.diagnostics) > before:
             return None
-        kind = binding.dimension(value, self._kinds, self.tables.value(*at, "value"))
-        assert isinstance(kind, tuple), "it is a number"
-        if stated is not None and stated[1].dimension != kind:
-            self._say(
-                diagnostic(
-                    "value_of_other_unit",
-                    self.tables.value(*at, "unit"),
-                    what=binding.in_words(kind),
-                    unit=stated[0],
-                )
-            )
+        unit = self._fitting_unit(value, stated, at)
+        if unit is None:
             return None
-        unit_name, unit = stated or (units.base_name(kind), units.Unit(kind, Fraction(1)))
         signal = ComputedSignal(
             name,
             value,
-            unit,
-            "" if unit_name == "1" else unit_name,
+            unit[1],
+            "" if unit[0] == "1" else unit[0],
             " ".join(str(table["value"]).split()),
             any(isinstance(part, e.Call) and part.name in ROUNDED for part in e.parts(written)),
             self._choice(table, (*at, "role"), Role, Role.INTERNAL) if "role" in table else None,
             self._choice(table, (*at, "agg"), Aggregate, Aggregate.LAST),
             self.tables.value(*at, "value"),
         )
-        self.known[name] = signal
+        self.known[name] = self._measured[name] = signal
+        self._kinds[name] = signal.unit.dimension
         return signal
 
-    @property
-    def _kinds(self) -> dict[str, binding.Kind]:
-        """Name → dimension, of all these signals."""
-        return {name: signal.unit.dimension for name, signal in self._measured.items()}
+    def _check_fields(self, table: Mapping[str, Any], *at: str) -> None:
+        for key in table:
+            if key in _ONLY_RECORDED:
+                self._say(diagnostic("computed_signal_field", self.tables.place(*at, key), key=key))
+        others = {key: table[key] for key in table if key not in _ONLY_RECORDED}
+        self._check_keys(others, _FIELDS, f"[signal.{at[1]}]", *at)
 
-    @property
-    def _measured(self) -> dict[str, MeasuredSignal]:
-        """All signals that a value can name."""
-        return {**self._signals, **self.known}
+    def _fitting_unit(
+        self, value: e.Expression, stated: _NamedUnit | None, at: tuple[str, ...]
+    ) -> _NamedUnit | None:
+        """The stated unit, or the base unit of the value; None if the stated one does not fit."""
+        kind = binding.dimension(value, self._kinds, self.tables.value(*at, "value"))
+        assert isinstance(kind, tuple), "it is a number"
+        if stated is None:
+            return units.base_name(kind), units.Unit(kind, Fraction(1))
+        if stated[1].dimension == kind:
+            return stated
+        self._say(
+            diagnostic(
+                "value_of_other_unit",
+                self.tables.value(*at, "unit"),
+                what=binding.in_words(kind),
+                unit=stated[0],
+            )
+        )
+        return None
 
-    def _unit(self, table: Mapping[str, Any], at: tuple[str, ...]) -> tuple[str, units.Unit] | None:
+    def _unit(self, table: Mapping[str, Any], at: tuple[str, ...]) -> _NamedUnit | None:
         """The declared unit; None if there is none, or it has an error."""
         name = self._field(table, at, str, "a unit in quotes")
         if name is None:
@@ -157,8 +166,8 @@ class ComputedTables(Fields):
         if self._sizes[name] > MOST_PARTS or self._levels[name] > MOST_LEVELS:
             self._say(diagnostic("value_too_large", span, parts=MOST_PARTS, levels=MOST_LEVELS))
             return None
-        known = self._measured
-        if any(id in self._tables("signal") and id not in known for id in names):
+        tables = self._tables("signal")
+        if any(id in tables and id not in self._measured for id in names):
             return None  # The signal already has a diagnostic.
         refused = self._refusal(written, self._inside((*at, "value"), span.text.strip("\"'")))
         if refused is not None:
