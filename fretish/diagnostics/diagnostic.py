@@ -96,7 +96,7 @@ class Code(Enum):
     )
     NO_ROLE = ("F354", "a variable has no declared role")
     PROSE_DRIFT = ("F351", "title or text state another number than the requirement")
-    DEFINITION_CIRCLE = ("F342", "the values of variables form a cycle")
+    DEFINITION_CIRCLE = ("F342", "the values of variables or signals form a cycle")
     DOUBLE_DEFINITION = ("F343", "a name is defined in two ways")
     VARIABLE_TYPE = ("F344", "a variable is used against its declared type")
     AMBIGUOUS_UNIT = ("F339", "a part of a unit is also the name of a signal")
