@@ -108,9 +108,11 @@ def played(here: Network, folder: Path, messages: Iterable[Sent]) -> dict[str, A
         here.interceptor(made)
         words = (str(PLAYER), str(file), "2", str(BEFORE), str(LATENESS))
         player = here.start(*words, stdout=subprocess.PIPE)
+        assert player.stdout is not None
+        assert player.stdout.readline() == "played\n"
+        assert watch.end() in (0, 1, 3)  # now, so that its run ends with the last message
         said, _ = player.communicate(timeout=5 * PATIENCE)
         assert player.returncode == 0
-        assert watch.end() in (0, 1, 3)
     finally:
         watch.close()
     found: dict[str, Any] = json.loads(said)
