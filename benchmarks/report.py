@@ -31,6 +31,7 @@ from fretc.audit.project_inputs import all_verdict_inputs
 from fretc.audit.store.container import packed
 from fretc.audit.store.writer import StoreFile, complete, publish
 from fretc.report.make import make
+from fretc.start import collect_rarely
 
 BINDINGS = """\
 [clock]
@@ -271,6 +272,7 @@ def written(folder: Path, requirements: int, runs: int, share: float, form: str)
 def report(folder: Path, requirements: int, form: str) -> tuple[float, float, float, float]:
     """Make the page: seconds of CPU, MB of memory with nothing read and at most, MB of the page."""
     paths = [str(folder / f"r{n}.fret") for n in range(requirements)]
+    collect_rarely()
     known = load(paths, str(folder / "bindings.toml"), str(folder / "hazards.toml"))
     before, start = _most_memory(), time.process_time()
     page = make(known, str(folder / form)).html

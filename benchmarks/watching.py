@@ -23,6 +23,7 @@ from fretc.audit.one_log import audit
 from fretc.audit.plan import Plan, monitored_requirements, planned
 from fretc.logs.reader import read
 from fretc.logs.signals.samples import Recording
+from fretc.start import collect_rarely
 from fretc.watch.session import Session
 from fretc.watch.sources.log import Log
 from fretc.watch.sources.source import Arrival
@@ -90,6 +91,7 @@ def arrivals_of(plan: Plan, log: str) -> list[Arrival]:
 
 
 def figures(log: str = LOG) -> Iterator[Figure]:
+    collect_rarely()
     for name, limit in LIMITS.items():
         with requirements(ROOT / name, 'time = "log_time"') as folder:
             plan = planned(read_project(folder))
@@ -101,6 +103,7 @@ def figures(log: str = LOG) -> Iterator[Figure]:
 
 
 def main() -> None:
+    collect_rarely()
     log = sys.argv[1] if len(sys.argv) > 1 else LOG
     print(f"{'':40}{'messages':>9}{'audit':>12}{'session':>12}{'watch':>12}{'pending':>10}")
     for name in ("requirements", "requirements/mission"):

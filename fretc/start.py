@@ -10,6 +10,11 @@ _GARBAGE = 200_000
 Python's default of 700 the collector takes a tenth of the start-up time."""
 
 
+def collect_rarely() -> None:
+    """Set how often garbage is collected, as the command does."""
+    gc.set_threshold(_GARBAGE)
+
+
 def main() -> None:
     """Run the command; the exit status is 130 if Ctrl-C stopped it during imports.
 
@@ -17,7 +22,7 @@ def main() -> None:
     command. It does not search frozen objects. Files are closed and temporary folders removed
     without that search.
     """
-    gc.set_threshold(_GARBAGE)
+    collect_rarely()
     try:
         from fretc.cli import main as run
 

@@ -11,6 +11,7 @@ import math
 import re
 from collections import Counter
 from fractions import Fraction
+from functools import lru_cache
 from itertools import combinations
 from operator import mul
 
@@ -185,6 +186,7 @@ def quantity(text: str) -> tuple[Dimension, Fraction] | None:
         return None
 
 
+@lru_cache(maxsize=256)
 def base_name(dimension: Dimension) -> str:
     """The base unit of a dimension: `m/s` for (1, 0, -1, 0, 0, 0); empty for a plain number."""
     numerator = [_power(b, n) for b, n in zip(_BASES, dimension, strict=True) if n > 0]

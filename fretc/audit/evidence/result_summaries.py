@@ -320,16 +320,20 @@ class CountedResult(PartialRecord, frozen=True, kw_only=True):
 
     def __post_init__(self) -> None:
         """Raise ValueError if a time has more than 64 bits."""
-        times = [self.start_ns, self.end_ns]
-        times += [each.start_ns for each in self.violations]
-        for time in times:
-            if time is not None and not LEAST <= time <= GREATEST:
-                raise ValueError("Expected a time of 64 bits")
+        _check_time(self.start_ns)
+        _check_time(self.end_ns)
+        for each in self.violations:
+            _check_time(each.start_ns)
 
     @property
     def trials(self) -> Trials | None:
         """The trials; None: no probability is required, or the log could not be read."""
         return trials_of(self.outcomes)
+
+
+def _check_time(time: int | None) -> None:
+    if time is not None and not LEAST <= time <= GREATEST:
+        raise ValueError("Expected a time of 64 bits")
 
 
 def summary_of(result: Result) -> ResultSummary:
@@ -377,8 +381,9 @@ def summary_of_part(result: Result | CountedResult, shared: Result | SharedFacts
 
 def undecided_ticks(result: Result | CountedResult) -> Sequence[tuple[int, int]]:
     """The intervals of ticks at which unknown values leave the verdict open."""
-    inputs = {(one.first_tick, one.last_tick) for one in result.unknown_inputs or ()}
-    return result.unknown or sorted(inputs)
+    if result.unknown or not result.unknown_inputs:
+        return result.unknown
+    return sorted({(one.first_tick, one.last_tick) for one in result.unknown_inputs})
 
 
 def judgement(result: Result | CountedResult) -> str:

@@ -13,6 +13,7 @@ import os
 import re
 import sqlite3
 import stat
+import threading
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import closing, contextmanager
 from pathlib import Path
@@ -225,13 +226,23 @@ def unpacked_summary(row: Row, summary: bytes) -> bytes:
     return _unpacked(summary, "a summary")
 
 
+class _Zstd(threading.local):
+    """The decompressor of a thread: another one for each record takes as long as a small record."""
+
+    def __init__(self) -> None:
+        self.decompressor = zstandard.ZstdDecompressor()
+
+
+_ZSTD = _Zstd()
+
+
 def _unpacked(data: bytes, what: str, size: int | None = None) -> bytes:
     """What was compressed; a size is compared before memory is used."""
     try:
         known = zstandard.frame_content_size(data)
         if size not in (None, known) or not 0 <= known <= LARGEST:
             raise SchemaError(f"{what} does not have the size that its row says")
-        return zstandard.ZstdDecompressor().decompress(data)
+        return _ZSTD.decompressor.decompress(data)
     except zstandard.ZstdError as error:
         raise SchemaError(f"{what} cannot be unpacked: {error}") from None
 

@@ -7,11 +7,13 @@ corners in either direction; the last corner is joined to the first.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fretc.logs.signals.samples import Numbers
+from fretish.classes.frozen import dataclass
 
 Corners = Sequence[tuple[float, float]]
 _DIRECTIONS = 3600
@@ -28,9 +30,17 @@ def distances(points: Numbers, outline: Corners) -> Numbers:
     Returns:
         Shape (n,); NaN where a coordinate is NaN.
     """
-    starts, ends = _edges(outline)
-    nearest = _to_segments(points, starts, ends).min(axis=1, initial=np.inf)
-    return np.where(_inside(points, starts, ends), 0.0, nearest)
+    edges = _edges(tuple(outline))
+    x, y = points[:, :1], points[:, 1:]
+    from_x, from_y = x - edges.x, y - edges.y
+    part = (from_x * edges.along_x + from_y * edges.along_y) / edges.square
+    part = np.minimum(np.maximum(part, 0.0), 1.0)
+    lengths = np.hypot(from_x - part * edges.along_x, from_y - part * edges.along_y)
+    nearest = lengths.min(axis=1, initial=np.inf)
+    # Inside: a line from the point to the right crosses the outline an odd number of times.
+    spans = (edges.y > y) != (edges.end_y > y)
+    right = x < edges.x + from_y / edges.height * edges.along_x
+    return np.where(np.logical_xor.reduce(spans & right, axis=1), 0.0, nearest)
 
 
 def places(ranges: Numbers, angles: Numbers, sensor: tuple[float, float, float]) -> Numbers:
@@ -65,41 +75,49 @@ def blind_share(
     angles = np.linspace(0.0, 2 * np.pi, _DIRECTIONS, endpoint=False)
     first = places(np.full(_DIRECTIONS, nearest), angles, sensor)
     rays = np.column_stack((np.cos(angles + sensor[2]), np.sin(angles + sensor[2])))
-    starts, ends = _edges(outline)
+    starts = np.array(outline, np.float64)
     least = np.minimum(distances(first, outline), _to_rays(starts, first, rays).min(axis=1))
-    crossed = _crossed(first, rays, starts, ends)
+    crossed = _crossed(first, rays, starts, np.roll(starts, -1, axis=0))
     return float(np.mean((least >= bound) & ~crossed))
 
 
-def _edges(outline: Corners) -> tuple[Numbers, Numbers]:
-    corners = np.array(outline, np.float64)
-    return corners, np.concatenate((corners[1:], corners[:1]))
+@dataclass(frozen=True, slots=True)
+class _Edges:
+    """The edges of an outline, each array of shape (edges,)."""
+
+    x: Numbers
+    y: Numbers
+    """Where they start."""
+    end_y: Numbers
+    along_x: Numbers
+    along_y: Numbers
+    """From start to end."""
+    square: Numbers
+    """Of the length; 1 for an edge without length."""
+    height: Numbers
+    """From start to end; 1 for a level edge."""
 
 
-def _to_segments(points: Numbers, starts: Numbers, ends: Numbers) -> Numbers:
-    """Shape (points, segments)."""
-    along = ends - starts
-    length = (along**2).sum(axis=1)
-    offset = points[:, None, :] - starts
-    part = (offset * along).sum(axis=2) / np.where(length == 0, 1.0, length)
-    foot = np.clip(part, 0.0, 1.0)[:, :, None] * along
-    return _lengths(offset - foot)
+@lru_cache(maxsize=64)
+def _edges(outline: tuple[tuple[float, float], ...]) -> _Edges:
+    x, y = np.array(outline, np.float64).T.copy()
+    end_y = np.roll(y, -1)
+    along_x, along_y = np.roll(x, -1) - x, end_y - y
+    square = along_x**2 + along_y**2
+    return _Edges(
+        x,
+        y,
+        end_y,
+        along_x,
+        along_y,
+        np.where(square == 0, 1.0, square),
+        np.where(along_y == 0, 1.0, along_y),
+    )
 
 
 def _lengths(vectors: Numbers) -> Numbers:
     """Shape (..., 2) to shape (...)."""
     return np.asarray(np.hypot(vectors[..., 0], vectors[..., 1]), np.float64)
-
-
-def _inside(points: Numbers, starts: Numbers, ends: Numbers) -> NDArray[np.bool_]:
-    """Whether a line from the point to the right crosses the outline an odd number of times."""
-    x, y = points[:, :1], points[:, 1:]
-    (x1, y1), (x2, y2) = starts.T, ends.T
-    spans = (y1 > y) != (y2 > y)
-    height = np.where(y1 == y2, 1.0, y2 - y1)
-    right = x < x1 + (y - y1) / height * (x2 - x1)
-    odd: NDArray[np.bool_] = (spans & right).sum(axis=1) % 2 == 1
-    return odd
 
 
 def _to_rays(points: Numbers, origins: Numbers, rays: Numbers) -> Numbers:

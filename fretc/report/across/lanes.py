@@ -29,6 +29,7 @@ _NAMED = 3
 """Maximum number of runs that the text names."""
 
 
+_NO_COUNT = (0, 0, 0)
 Known = tuple[Stretches, tuple[WordLane, ...]]
 """The intervals of a result, and the signals of words of its run."""
 
@@ -42,7 +43,9 @@ class RunTally:
 
     def with_one(self, mark: Mark, count: tuple[int, int, int]) -> RunTally:
         """The tally with one more result."""
-        worst = min(self.mark, mark, key=lambda each: each.severity)
+        if mark is self.mark and count == _NO_COUNT:  # so are most results
+            return self
+        worst = mark if mark.severity < self.mark.severity else self.mark
         a, b, c = self.count
         return RunTally(worst, (a + count[0], b + count[1], c + count[2]))
 

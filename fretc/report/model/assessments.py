@@ -117,7 +117,7 @@ class SingleAudit:
     @property
     def mark(self) -> Mark:
         """Verdict and currency."""
-        return verdict_mark(self.verdict, suspect=self.is_stale)
+        return verdict_mark(self.verdict, suspect=bool(self.suspicions))
 
     def since(self, review: tuple[str, ...]) -> SingleAudit:
         """The audit, with the reasons why it is suspect since a review.

@@ -44,7 +44,9 @@ class AboutResults:
         recorded = result.rests_on
         if recorded not in self._outdated:
             self._outdated[recorded] = tuple(self._changes(recorded))
-        return (*self._outdated[recorded], *_about_log(result))
+        about_log = tuple(_about_log(result))
+        outdated_inputs = self._outdated[recorded]
+        return (*outdated_inputs, *about_log) if about_log else outdated_inputs
 
     def _changes(self, recorded: Recorded) -> Iterator[str]:
         if self._formalized:

@@ -10,8 +10,9 @@ A subscription with `SensorDataQoS` keeps five messages and drops the oldest of 
 before the node takes one. So the player publishes a message only after the node has answered a
 request that followed the message before: the speed is that of the node, and nothing is lost.
 
-When all is played, the clock goes on for AFTER seconds, a heartbeat of the monitor for each step.
-Then one line of JSON is printed: what was published, and what node and interceptor have said.
+When all is played, the clock goes on for AFTER seconds, a heartbeat of the monitor for each step;
+after the first second, `played` is printed. Then one line of JSON is printed: what was published,
+and what node and interceptor have said.
 
 It runs where rclpy is installed, without fretc.
 """
@@ -45,6 +46,8 @@ KEPT = 1000
 """So many messages are sent again to a subscription that has missed them."""
 AGAIN = 1.0
 """Seconds after which the first message of a topic is published again."""
+SHORT = 1.0
+"""Simulated seconds in which others take what has come to them."""
 BEATS = 3
 """The last of so many requests is made after the clock was set: one of them may be under way, and
 another one in the queue."""
@@ -167,9 +170,11 @@ def main(path: str, readers: str, before: str, after: str) -> None:
     player.change(Transition.TRANSITION_CONFIGURE)
     player.change(Transition.TRANSITION_ACTIVATE)
     end = player.play(Path(path), int(readers), float(before))
-    times = player.go_on(end, float(after))
     for publisher in player.publishers.values():
         assert publisher.wait_for_all_acked(Duration(seconds=PATIENCE))
+    times = player.go_on(end, SHORT)
+    print("played", flush=True)
+    times += player.go_on(times[-1], float(after) - SHORT)
     reported = dict(player.values)
     assert player.until(lambda: player.values != reported)
     found = {

@@ -1,7 +1,7 @@
 """The emitted package on real ROS 2: robot, monitor and interceptor are processes with Fast DDS.
 
 What the node says while it runs, what `fretc watch dds` says beside it, and what `fretc audit`
-says of the recording afterwards are one.
+says of the recording afterwards are one. `test_ros2_scenarios.py` shows it without lost messages.
 """
 
 from __future__ import annotations
@@ -93,6 +93,7 @@ def breaks_edge(robot: Robot) -> None:
     robot.ask("away")
 
 
+@full_only("a mission in real time: on a busy machine the node may lose scans that others get")
 @needs_package("cyclonedds")
 def test_node_watch_and_audit_say_one_thing(here: Network, tmp_path: Path, fretc: Fretc) -> None:
     by_stamps(tmp_path / "r1")
