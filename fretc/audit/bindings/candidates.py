@@ -93,9 +93,9 @@ class Candidates:
 def candidates(overview: Overview, needs: Iterable[Need]) -> tuple[Candidates, ...]:
     """For each name its fields."""
     fits = [(need, sorted(_fitting(overview, need), key=_order)) for need in needs]
-    ranges = _ranges(overview, [each for _, found in fits for each in found])
+    known = ranges(overview, [each.signal for _, found in fits for each in found])
     return tuple(
-        _decided(need, [replace(each, range=ranges.get(each.signal.path, "")) for each in found])
+        _decided(need, [replace(each, range=_range(known.get(each.signal.path))) for each in found])
         for need, found in fits
     )
 
@@ -212,10 +212,12 @@ def _unit_of(field: str) -> str:
 # Ranges
 
 
-def _ranges(overview: Overview, fitting: Sequence[Candidate]) -> Mapping[str, str]:
-    """The range of the finite numbers of each field, by its path."""
-    signals = {each.signal.path: each.signal for each in fitting if not each.signal.values}
-    named = {f"x{i}": each for i, each in enumerate(signals.values())}
+def ranges(
+    overview: Overview, signals: Iterable[DraftedSignal]
+) -> Mapping[str, tuple[float, float]]:
+    """The least and the greatest of the finite numbers of each signal in the log, by its path."""
+    numbers = {each.path: each for each in signals if not each.values}
+    named = {f"x{i}": each for i, each in enumerate(numbers.values())}
     text = render(
         "project/signals.toml.j2", signals=[replace(each, name=n) for n, each in named.items()]
     )
@@ -226,11 +228,14 @@ def _ranges(overview: Overview, fitting: Sequence[Candidate]) -> Mapping[str, st
     samples = recording.samples if isinstance(recording, Recording) else {}
     finite = {name: each.values[np.isfinite(each.values)] for name, each in samples.items()}
     return {
-        named[name].path: _range(float(values.min()), float(values.max()))
+        named[name].path: (float(values.min()), float(values.max()))
         for name, values in finite.items()
         if values.size
     }
 
 
-def _range(least: float, greatest: float) -> str:
+def _range(ends: tuple[float, float] | None) -> str:
+    if ends is None:
+        return ""
+    least, greatest = ends
     return f"always {least:.4g}" if least == greatest else f"from {least:.4g} to {greatest:.4g}"

@@ -7,13 +7,22 @@ number or text stands there as a comment. Times are nanoseconds.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from math import gcd
 
 from compiler.files.build_id import __version__
 from compiler.files.templating import render
-from fretc.audit.bindings.candidates import Candidate, Candidates, Need, Similarity, candidates
+from fretc.audit.bindings.candidates import (
+    Candidate,
+    Candidates,
+    Need,
+    Similarity,
+    candidates,
+    ranges,
+)
 from fretc.audit.bindings.draft_signals import (
     DraftedSignal,
+    TopicDraft,
     bindable_fields,
     drafted_signals,
     period_of,
@@ -26,6 +35,8 @@ from fretc.logs.messages.leaves import FieldKind
 from fretc.logs.reader import Overview
 from fretish.clock import in_words
 
+_ONE = 1.5
+"""A fraction above it, also with an error of measurement, is a percentage."""
 _TICK = 100 * 10**6
 """Nanoseconds of a tick if no topic has a rate."""
 _FAST = 220 * 10**6
@@ -40,6 +51,7 @@ def draft(
     missing: Sequence[MissingProposition],
     durations: Sequence[int] = (),
     unread: Sequence[MissingSignal] = (),
+    clocked_by: str = "",
 ) -> str:
     """The text of a `bindings.toml`.
 
@@ -51,15 +63,18 @@ def draft(
         missing: propositions that sentences use and no bindings define.
         durations: durations of the sentences in nanoseconds; each is a whole number of ticks.
         unread: signals that sentences compare and no bindings declare.
+        clocked_by: the topic that sets the tick; empty: those of the names that sentences use, or
+            else those of all signals.
     """
-    topics = topic_drafts(overview)
+    topics = _with_percentages(overview, topic_drafts(overview))
     signals = [signal for topic in topics for signal in topic.signals]
     known = {signal.name for signal in signals}
     needs: list[Need] = [*unread, *missing]
     wanted = candidates(overview, (each for each in needs if each.name not in known))
     fields = {each.need.name: each for each in wanted}
     chosen = [each.chosen.signal for each in fields.values() if each.chosen]
-    tick, why = _dividing(*_tick(overview, [*chosen, *signals]), durations)
+    timed = [clocked_by] if clocked_by else [each.topic for each in chosen or signals]
+    tick, why = _dividing(*_tick(overview, timed), durations)
     return render(
         "bindings/bindings.toml.j2",
         version=__version__,
@@ -130,13 +145,43 @@ def _example(overview: Overview, signals: Sequence[DraftedSignal]) -> str:
     return f"{first.name} < 0.5 {first.quantity.unit}".strip()
 
 
+# Percentages
+
+
+def _with_percentages(overview: Overview, topics: Sequence[TopicDraft]) -> list[TopicDraft]:
+    """The topics, with the unit `%` for each fraction that exceeds 1 in the log.
+
+    sensor_msgs/BatteryState defines the percentage as a number from 0 to 1, and many robots send
+    0 to 100.
+    """
+    fractions = [each for topic in topics for each in topic.signals if _is_fraction(each)]
+    exceeding = {path for path, (_, most) in ranges(overview, fractions).items() if most > _ONE}
+    note = "from 0 to 100 in this log, although its type defines it as 0 to 1; NaN: unmeasured"
+    return [
+        replace(
+            topic,
+            signals=tuple(
+                replace(each, quantity=replace(each.quantity, unit="%", note=note))
+                if each.path in exceeding
+                else each
+                for each in topic.signals
+            ),
+        )
+        for topic in topics
+    ]
+
+
+def _is_fraction(signal: DraftedSignal) -> bool:
+    return signal.quantity.name == "percentage" and not signal.quantity.unit
+
+
 # Time
 
 
-def _tick(overview: Overview, signals: Sequence[DraftedSignal]) -> tuple[int, str]:
+def _tick(overview: Overview, timed: Sequence[str]) -> tuple[int, str]:
     """A tick in which each fast topic sends one message, and the reason for its length."""
     topics = overview.recording.topics
-    drafted = dict.fromkeys(signal.topic for signal in signals) or dict.fromkeys(
+    drafted = dict.fromkeys(timed) or dict.fromkeys(
         name for name in topics if bindable_fields(overview, name)
     )
     periods = {name: period for name in drafted if (period := period_of(topics[name])) is not None}

@@ -13,6 +13,7 @@ from fretc.audit.bindings.quantities import QUANTITIES, NumberField
 from fretc.logs.messages.leaves import FieldKind, Leaves
 from fretc.logs.reader import Overview
 from fretc.logs.signals.samples import Topic
+from fretc.logs.tables.contents import TOPIC as TABLE
 from fretc.logs.vocabulary import Words
 from fretish.bindings.amounts import duration
 from fretish.bindings.declarations import path, short_type
@@ -82,8 +83,17 @@ def plain_signals(overview: Overview) -> tuple[DraftedSignal, ...]:
 
 
 def _plain(topic: Topic, field: str, values: tuple[str, ...]) -> DraftedSignal:
-    name, type_ = _word(f"{topic.name}_{field}"), short_type(topic.type)
+    name, type_ = _word(_name(topic.name, field)), short_type(topic.type)
     return DraftedSignal(name, topic.name, type_, NumberField(field, ""), age_limit(topic), values)
+
+
+def _name(topic: str, field: str) -> str:
+    """The words of a signal of a type that is not well known; a table is not named."""
+    if topic == TABLE:
+        return field
+    if topic.startswith(f"{TABLE}/"):
+        return topic.removeprefix(f"{TABLE}/")
+    return f"{topic}_{field}"
 
 
 def bindable_fields(overview: Overview, topic: str) -> dict[str, tuple[str, ...]]:

@@ -6,6 +6,7 @@ its first audit shows something, and a person puts the true limit in its place.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from decimal import ROUND_CEILING, Decimal
 from pathlib import Path
@@ -17,7 +18,8 @@ from fretc.audit.bindings.draft import draft
 from fretc.audit.bindings.draft_signals import drafted_signals, plain_signals
 from fretc.logs.reader import Overview, look, read
 from fretc.logs.signals.samples import Recording
-from fretc.logs.storage.log_names import name_of
+from fretc.logs.storage.log_names import is_url, name_of
+from fretc.logs.tables.episodes import runs_of
 from fretish.bindings.declarations import Declarations, Signal
 from fretish.bindings.tables.reader import read_bindings
 from fretish.classes.frozen import dataclass
@@ -28,6 +30,16 @@ from fretish.printer import identifier
 
 _PREFERENCE = ("m/s", "m", "rad/s")
 """Units of the signals that suit a first requirement best; all other units come after them."""
+_COUNTERS = frozenset(
+    ("timestamp", "time", "stamp", "sec", "nanosec", "index", "id", "seq", "sequence", "count",
+     "counter", "frame", "episode", "instance", "version")
+)  # fmt: skip
+"""Words in the names of fields that are no measurements."""
+_MEASURES = (
+    "battery", "voltage", "remaining", "percent", "speed", "vel", "alt", "depth", "height",
+    "distance", "range", "temperature", "current", "effort",
+)  # fmt: skip
+"""Parts of the names of fields that suit a first requirement."""
 _DIGITS = 2
 """Significant digits of a limit."""
 _NAMES = ("r1.fret", "bindings.toml", "hazards.toml")
@@ -88,20 +100,22 @@ def without_log() -> StarterFiles:
 
 def from_log(log: str) -> StarterFiles | Diagnostic:
     """The first files of a project whose first requirement is about a signal of the log."""
-    overview = look(log, words=True)
+    run = log if is_url(log) else runs_of(log)[0]
+    overview = look(run, words=True)
     if isinstance(overview, Diagnostic):
         return overview
     signals = _signals(overview)
     declarations, _ = read_bindings(Source("bindings.toml", signals))
     if declarations is None or not declarations.signals:
         return _no_signal(log)
-    recording = read(log, declarations, list(declarations.signals))
+    recording = read(run, declarations, list(declarations.signals))
     if isinstance(recording, Diagnostic):
         return recording
     bound = next(_bounds(declarations, recording), None)
     if bound is None:
         return _no_signal(log)
     origin = f"is the largest value in {Path(overview.recording.name).name}, rounded up."
+    signals = _signals(overview, declarations.signals[bound.signal].path.topic)
     files = _files(first_requirement(bound, origin), signals)
     return StarterFiles(files, overview.recording.findings)
 
@@ -115,9 +129,9 @@ def _files(requirement: FirstRequirement, signals: str) -> dict[str, str]:
     return dict(zip(_NAMES, texts, strict=True))
 
 
-def _signals(overview: Overview) -> str:
+def _signals(overview: Overview, clocked_by: str = "") -> str:
     """The clock and signals; if no message type is well known, a signal for every field."""
-    text = draft(overview, ())
+    text = draft(overview, (), clocked_by=clocked_by)
     plain = () if drafted_signals(overview) else plain_signals(overview)
     return text + render("project/signals.toml.j2", signals=plain)
 
@@ -129,6 +143,7 @@ def _bounds(declarations: Declarations, recording: Recording) -> Iterator[UpperL
         key=lambda signal: (
             not _is_steady(signal, recording),
             not _varies(signal, recording),
+            _is_counter(signal),
             _rank(signal),
         ),
     )
@@ -154,9 +169,16 @@ def _varies(signal: Signal, recording: Recording) -> bool:
     return samples is not None and bool((samples.values[1:] != samples.values[:-1]).any())
 
 
-def _rank(signal: Signal) -> int:
-    unit = signal.unit_name
-    return _PREFERENCE.index(unit) if unit in _PREFERENCE else len(_PREFERENCE)
+def _is_counter(signal: Signal) -> bool:
+    """Whether the name of the field says that it counts or names something: no limit suits it."""
+    words = re.findall(r"[a-z]+", signal.path.fields[-1].lower())
+    return not _COUNTERS.isdisjoint(words)
+
+
+def _rank(signal: Signal) -> tuple[int, bool]:
+    unit, field = signal.unit_name, signal.path.fields[-1].lower()
+    place = _PREFERENCE.index(unit) if unit in _PREFERENCE else len(_PREFERENCE)
+    return place, not any(word in field for word in _MEASURES)
 
 
 def _limit(largest: float) -> str:

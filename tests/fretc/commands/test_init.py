@@ -6,6 +6,8 @@ import struct
 from decimal import Decimal
 from pathlib import Path
 
+import pyarrow
+import pyarrow.parquet
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -105,6 +107,57 @@ def test_a_project_from_the_recorded_mission_judges_it(fretc: Fretc) -> None:
     assert fretc("init", "--from", log).status == 0
     assert fretc("check").status == 0
     assert fretc("audit", log).status == 0
+
+
+def sent(topic: str, type_: str, period: int, *messages: dict[str, float]) -> list[Sent]:
+    """JSON messages at a period in milliseconds."""
+    return [
+        Sent(topic, type_, json.dumps(each).encode(), 1000 * S + i * period * MS, None, "json")
+        for i, each in enumerate(messages)
+    ]
+
+
+def drafted(fretc: Fretc, messages: list[Sent]) -> tuple[str, str]:
+    """The sentence and the bindings of a project from a log with these messages."""
+    write(Path("run.mcap"), sorted(messages, key=lambda message: message.time))
+    assert fretc("init", "--from", "run.mcap").status == 0
+    folder = Path("requirements")
+    return (folder / "r1.fret").read_text().splitlines()[-1], (folder / "bindings.toml").read_text()
+
+
+@pytest.mark.parametrize("most", [0.9, 1.0, 1.2, 90.0])
+def test_a_percentage_from_0_to_100_has_its_unit(fretc: Fretc, most: float) -> None:
+    type_ = "sensor_msgs/BatteryState"
+    values = [{"percentage": most - i / 100} for i in range(20)]
+    _, bindings = drafted(fretc, sent("/battery", type_, 100, *values))
+    assert ('unit = "%"' in bindings) == (most == 90)
+    assert ("from 0 to 100 in this log" in bindings) == (most == 90)
+
+
+def test_the_first_requirement_is_about_a_measurement_and_its_topic_sets_the_tick(
+    fretc: Fretc,
+) -> None:
+    numbers = [{"a_timestamp": 1.5 * i, "seq": i, "weight": 3 + i, "volts": 2} for i in range(40)]
+    states = [{"id": i, "voltage": 12 + i / 10} for i in range(40)]
+    messages = sent("/a", "x/A", 200, *numbers) + sent("/b", "x/B", 20, *states)
+    sentence, bindings = drafted(fretc, messages)
+    assert sentence == "the robot shall always satisfy b_voltage <= 16"
+    assert 'tick = "20 ms"  # /b comes every 20 ms' in bindings
+
+
+def test_a_column_of_a_table_has_its_own_name(fretc: Fretc) -> None:
+    put("run.csv", "t_s,battery\n" + "".join(f"{i / 10},{20 - i}\n" for i in range(15)))
+    assert fretc("init", "--from", "run.csv").status == 0
+    assert Path("requirements/r1.fret").read_text().endswith(" battery <= 20\n")
+
+
+@pytest.mark.slow
+def test_a_project_is_drafted_from_the_first_of_several_runs_of_a_table(fretc: Fretc) -> None:
+    rows = {"episode_index": [0] * 12 + [1] * 12, "timestamp": [i / 10 for i in range(12)] * 2}
+    rows["speed"] = [float(i) for i in range(24)]
+    pyarrow.parquet.write_table(pyarrow.table(rows), "runs.parquet")
+    assert fretc("init", "--from", "runs.parquet").status == 0
+    assert Path("requirements/r1.fret").read_text().endswith(" speed <= 11\n")
 
 
 @pytest.mark.parametrize("there", [*NAMES, "mine.txt"])
