@@ -50,7 +50,7 @@ The clock of one log jumps ahead by 5 s.
 BEFORE = 30
 """Seconds from the first stamp to its message: the mission is over before all of it is judged."""
 SPANS = (
-    dict.fromkeys(scenarios.names(), (8.0, 32.0))
+    dict.fromkeys(scenarios.without_agent(), (8.0, 32.0))
     if FULL
     else dict.fromkeys(("obstacle-moved", "safety-off"), (11.5, 14.0))
 )
