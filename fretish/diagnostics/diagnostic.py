@@ -96,7 +96,7 @@ class Code(Enum):
     )
     NO_ROLE = ("F354", "a variable has no declared role")
     PROSE_DRIFT = ("F351", "title or text state another number than the requirement")
-    DEFINITION_CIRCLE = ("F342", "the values of variables form a cycle")
+    DEFINITION_CIRCLE = ("F342", "the values of variables or signals form a cycle")
     DOUBLE_DEFINITION = ("F343", "a name is defined in two ways")
     VARIABLE_TYPE = ("F344", "a variable is used against its declared type")
     AMBIGUOUS_UNIT = ("F339", "a part of a unit is also the name of a signal")
@@ -264,6 +264,12 @@ class Code(Enum):
     NOT_PUBLISHED = ("F963", "the verdicts of a watch cannot be published")
     DISORDERED = ("F964", "a watched log has messages out of order")
     UNNUMBERED = ("F965", "messages of a watched topic have no number")
+    NOT_RENAMED = ("F966", "a name cannot be renamed")
+    NO_READING = ("F975", "a text in plain English has no reading")
+    WORDS_LEFT_OUT = ("F976", "no reading contains some words of a text")
+    SEVERAL_READINGS = ("F977", "several readings of a text are left")
+    NO_SUCH_READING = ("F978", "the chosen reading does not exist")
+    ID_NOT_WRITTEN = ("F979", "a requirement cannot have the id for writing it")
     INTERNAL = ("F999", "internal error in fretc")
 
     @property
@@ -294,6 +300,8 @@ class Diagnostic:
     """The reason why the project accepts a warning, which is displayed nevertheless."""
     fix: Fix | None = None
     """The fix in `help` as a value, if it replaces a span by a text."""
+    related: tuple[Span, ...] = ()
+    """Other places that the message is about."""
 
     @property
     def is_error(self) -> bool:

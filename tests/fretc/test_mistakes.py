@@ -353,8 +353,9 @@ COMMANDS = {
 }
 NO_PROJECT = {
     "init", "fmt", "import", "info", "trends", "sign", "sbom", "completion", "simulate",
+    "lsp", "write",
 }  # fmt: skip
-"""Commands that take no project, or each file of it by itself."""
+"""Commands that take no project, each file of it by itself, or its names alone."""
 
 
 def test_every_command_that_takes_a_project_is_tried() -> None:

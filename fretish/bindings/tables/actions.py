@@ -16,9 +16,9 @@ from fretish.diagnostics.messages import diagnostic
 
 ROS_TYPE = re.compile(r"(?P<package>[a-z]\w*)/(?P<message>[A-Z]\w*)", re.ASCII)
 """A message type without `msg`, as in ROS 1."""
-_FIELDS = ("topic", "type", "message")
-_CALL = ("service", "type", "request", "limit")
-_AGENT = ("trace",)
+FIELDS = ("topic", "type", "message")
+CALL_FIELDS = ("service", "type", "request", "limit")
+AGENT_FIELDS = ("trace",)
 _LIMIT, _LONGEST = 400_000_000, 60_000_000_000
 """Nanoseconds, the default and the most; a stop is requested after 500 ms without perception."""
 _EXAMPLES = {
@@ -50,7 +50,7 @@ class ActionTables(Fields):
         if not isinstance(table, dict):
             self._say(diagnostic("agent_not_table", self.tables.place("agent")))
             return None
-        self._check_keys(table, _AGENT, "[agent]", "agent")
+        self._check_keys(table, AGENT_FIELDS, "[agent]", "agent")
         topic = table.get("trace")
         if isinstance(topic, str) and TOPIC.fullmatch(topic) and topic.startswith("/"):
             return topic
@@ -60,7 +60,7 @@ class ActionTables(Fields):
 
     def _binding(self, name: str, table: Mapping[str, Any]) -> ActionBinding | None:
         before, at = len(self.notes.diagnostics), ("action", name)
-        self._check_action(table, at, _FIELDS, _EXAMPLES)
+        self._check_action(table, at, FIELDS, _EXAMPLES)
         topic, kind, message = (
             self._field(table, (*at, "topic"), str, "a topic in quotes") or "/topic",
             self._field(table, (*at, "type"), str, "a ROS type in quotes") or "std_msgs/Bool",
@@ -115,7 +115,7 @@ class ActionTables(Fields):
 
     def _call(self, name: str, table: Mapping[str, Any]) -> ServiceCall | None:
         before, at = len(self.notes.diagnostics), ("call", name)
-        self._check_action(table, at, _CALL, _CALL_EXAMPLES)
+        self._check_action(table, at, CALL_FIELDS, _CALL_EXAMPLES)
         if name in self._tables("action"):
             self._say(diagnostic("action_publishes_and_calls", self.tables.place(*at), action=name))
         service, kind, request = (
