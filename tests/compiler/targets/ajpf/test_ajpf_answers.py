@@ -5,7 +5,6 @@
 """
 
 import json
-import os
 import re
 import subprocess
 import sys
@@ -18,6 +17,7 @@ from compiler.files.text_files import sha256
 from compiler.targets.ajpf import bundle, runtime
 from tests.bound_requirements import bound_requirement
 from tests.each import each
+from tests.programs import ask_ajpf
 
 ROOT = Path(__file__).parents[4]
 RECORDED = ROOT / "tests/data/ajpf_answers.json"
@@ -68,7 +68,6 @@ SENTENCES = {
     "upon": ("upon a sw shall eventually satisfy r", BOUND),
     "after": ("after c whenever a sw shall eventually satisfy r", BOUND),
 }
-ASKED = bool(os.environ.get("FRETC_AJPF"))
 
 
 def texts(name: str) -> dict[str, str]:
@@ -123,8 +122,8 @@ def test_ajpf_has_answered_as_expected_about_the_texts_of_now(name: str) -> None
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(not ASKED, reason="set FRETC_AJPF, AJPF_HOME and JAVA_HOME of a Java 11")
 def test_ajpf_answers_as_recorded(tmp_path: Path, request: pytest.FixtureRequest) -> None:
+    ask_ajpf()
     about: dict[str, Any] = {"bundles": {}}
     for name, (sentence, bindings) in SENTENCES.items():
         folder = tmp_path / re.sub(r"\W", "-", name)
