@@ -144,6 +144,12 @@ def mcapl() -> str:
     return str(home.resolve())
 
 
+def ask_ajpf() -> None:
+    """Skip the running test, which asks AJPF for half an hour, unless FRETC_AJPF is set."""
+    if _hidden or "FRETC_AJPF" not in os.environ:
+        pytest.skip("asks AJPF: set FRETC_AJPF, AJPF_HOME, and JAVA_HOME of a Java 11")
+
+
 def leave_out(need: str) -> NoReturn:
     """Skip the running test, which needs something that is not here."""
     pytest.skip(need)
