@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <functional>
@@ -81,6 +82,60 @@ template<class Message>
 std::optional<fretc::Time> stamp(const Message &, long)
 {
   return std::nullopt;
+}
+
+// The full name of the node of a publisher or a subscription.
+template<class Endpoint>
+std::string node_of(const Endpoint & endpoint)
+{
+  const std::string & space = endpoint.node_namespace();
+  return (space == "/" ? "" : space) + "/" + endpoint.node_name();
+}
+
+// The hash of the definition of its type; empty: it is not known. ROS 2 has it since Iron.
+template<class Endpoint>
+auto hash_of(const Endpoint & endpoint, int) -> decltype(
+  endpoint.topic_type_hash(), std::string())
+{
+  const auto & hash = endpoint.topic_type_hash();
+  if (hash.version == 0) {
+    return "";
+  }
+  char part[16];
+  std::snprintf(part, sizeof(part), "RIHS%02u_", static_cast<unsigned>(hash.version));
+  std::string found = part;
+  for (const std::uint8_t byte : hash.value) {
+    std::snprintf(part, sizeof(part), "%02x", static_cast<unsigned>(byte));
+    found += part;
+  }
+  return found;
+}
+
+template<class Endpoint>
+std::string hash_of(const Endpoint &, long)
+{
+  return "";
+}
+
+// Who publishes another type than `own`, or another definition of it; empty: nobody.
+//
+// The middleware matches types by their names: the other fields would be misread.
+template<class Endpoints>
+std::string another(const Endpoints & own, const Endpoints & publishers)
+{
+  for (const auto & publisher : publishers) {
+    for (const auto & each : own) {
+      if (publisher.topic_type() != each.topic_type()) {
+        return node_of(publisher) + " publishes " + publisher.topic_type();
+      }
+      const std::string theirs = hash_of(publisher, 0), ours = hash_of(each, 0);
+      if (!theirs.empty() && !ours.empty() && theirs != ours) {
+        return node_of(publisher) + " publishes another definition of " + each.topic_type() +
+               ", " + theirs;
+      }
+    }
+  }
+  return "";
 }
 
 class MonitorNode : public rclcpp_lifecycle::LifecycleNode
@@ -176,6 +231,13 @@ public:
   }
 
 private:
+  struct Source
+  {
+    rclcpp::SubscriptionBase::SharedPtr subscription;
+    std::vector<rclcpp::TopicEndpointInfo> own;  // Its description, once it is there.
+    std::string foreign;  // Who publishes other messages there, as was logged last.
+  };
+
   std::unique_ptr<StopSupervisor> make_supervisor() const
   {
     const auto & ids = fretc::Machine::ids();
@@ -195,18 +257,51 @@ private:
   void on_message(std::size_t topic, const rclcpp::QoS & qos, Read read)
   {
     auto take = [this, topic, read](typename Message::ConstSharedPtr message) {
+        if (!supervisor_ || refuses(topic)) {
+          return;
+        }
         const auto now = this->now().nanoseconds();
-        if (supervisor_ && now != 0) {  // Simulated time is 0 until it begins.
+        if (now != 0) {  // Simulated time is 0 until it begins.
           supervisor_->arrive(topic, stamp(*message, 0), now, steady(), read(*message));
           say(false);
         }
       };
-    subscriptions_.push_back(
-      create_subscription<Message>(fretc::setting().topics[topic], qos, take));
+    sources_.emplace_back();
+    sources_.back().subscription =
+      create_subscription<Message>(fretc::setting().topics[topic], qos, take);
+  }
+
+  // Whether somebody publishes messages there that would be misread; it is logged once.
+  bool refuses(std::size_t topic)
+  {
+    Source & source = sources_[topic];
+    const std::string name = source.subscription->get_topic_name();
+    if (source.own.empty()) {
+      for (const auto & each : get_subscriptions_info_by_topic(name)) {
+        if (node_of(each) == get_fully_qualified_name()) {
+          source.own.push_back(each);
+        }
+      }
+    }
+    const std::string foreign = another(source.own, get_publishers_info_by_topic(name));
+    if (!foreign.empty() && foreign != source.foreign) {
+      RCLCPP_ERROR(
+        get_logger(), "%s: %s: nothing is known of it meanwhile", name.c_str(), foreign.c_str());
+    }
+    source.foreign = foreign;
+    const auto now = this->now().nanoseconds();
+    if (!foreign.empty() && now != 0) {
+      supervisor_->refuse(topic, foreign, now);
+      say(false);
+    }
+    return !foreign.empty();
   }
 
   void on_heartbeat()
   {
+    for (std::size_t topic = 0; topic < sources_.size(); topic++) {
+      refuses(topic);
+    }
     const auto now = this->now().nanoseconds();
     if (now != 0) {
       supervisor_->pass_to(now);
@@ -269,7 +364,7 @@ private:
       request(true);
     }
     timer_.reset();
-    subscriptions_.clear();
+    sources_.clear();
     supervisor_.reset();
   }
 
@@ -301,7 +396,7 @@ private:
   rclcpp_lifecycle::LifecyclePublisher<Bool>::SharedPtr stops_;
   rclcpp_lifecycle::LifecyclePublisher<String>::SharedPtr verdicts_;
   rclcpp::Publisher<DiagnosticArray>::SharedPtr diagnostics_;
-  std::vector<rclcpp::SubscriptionBase::SharedPtr> subscriptions_;
+  std::vector<Source> sources_;  // One for each topic while the node is active.
   rclcpp::TimerBase::SharedPtr timer_;
 };
 

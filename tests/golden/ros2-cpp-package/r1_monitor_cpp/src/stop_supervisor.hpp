@@ -40,7 +40,8 @@ public:
   // samples grow too old; 0: only by their ages.
   StopSupervisor(const BindingConfig & setting, const std::vector<std::size_t> & deciding, double source_timeout)
   : setting_(&setting), evaluator_(setting), timeout_(source_timeout), deciding_(deciding),
-    heard_(setting.topics.size()), counts_(setting.topics.size(), 0)
+    heard_(setting.topics.size()), unreadable_(setting.topics.size()),
+    counts_(setting.topics.size(), 0)
   {
     pending_.fill(FRETC_UNKNOWN);
     for (const std::size_t place : deciding) {
@@ -62,7 +63,20 @@ public:
     const Time time = setting_->stamped && stamp ? *stamp : now;
     counts_[topic]++;
     judge(now, [&] {evaluator_.arrive(topic, time, now, samples);});
+    unreadable_[topic].clear();
     heard_[topic] = steady;
+  }
+
+  // Trust a topic no longer: its signals are unknown until its next message arrives.
+  void refuse(std::size_t topic, const std::string & reason, Time now)
+  {
+    if (unreadable_[topic] == reason) {
+      return;
+    }
+    unreadable_[topic] = reason;
+    const auto last = setting_->stamped ? evaluator_.last(topic) : std::nullopt;
+    const std::vector<Number> unknown(setting_->policies.size(), fretc_no_number());
+    judge(now, [&] {evaluator_.arrive(topic, last ? *last + 1 : now, now, unknown);});
   }
 
   // Everything that was received before `now` has been given.
@@ -149,6 +163,9 @@ private:
   std::string fault(std::size_t topic, double steady) const
   {
     const std::string & name = setting_->topics[topic];
+    if (!unreadable_[topic].empty()) {
+      return "a message of " + name + " cannot be read: " + unreadable_[topic];
+    }
     if (!heard_[topic]) {
       return "no message of " + name + " yet";
     }
@@ -208,6 +225,7 @@ private:
   std::vector<std::size_t> deciding_;
   std::set<std::size_t> needed_, aging_, violated_;
   std::vector<std::optional<double>> heard_;
+  std::vector<std::string> unreadable_;  // Why the last message could not be read; empty: it was.
   std::vector<std::size_t> counts_;
   std::array<Truth, Machine::COUNT> pending_;
   std::array<std::string, Machine::COUNT> states_;
