@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import pairwise
@@ -191,6 +192,8 @@ def _clause(words: Phrase, *, is_or: bool) -> Clause:
 
 def _suffix(words: Phrase) -> tuple[Phrase, tuple[Clause, ...]]:
     """What the component shall do, and the clauses after it."""
+    while lower(words[:1]) == (",",):
+        words = words[1:]
     starts = [*_starts(words)]
     ends = [*(start for start, _ in starts), len(words)][1:]
     clauses: list[Clause] = []
@@ -275,10 +278,34 @@ def divided(text: str) -> tuple[str, ...]:
         verb = clause.words[cut + 1 :]
         if cut and 0 < len(verb) <= _SHORT and not {*lower(verb)} & COPULAS and following.marker:
             before = text[: clause.words[cut].start].rstrip(" ,")
-            head = text[: parts.modal[-1].start + len(parts.modal[-1].text)] if parts.modal else ""
-            start = parts.subject[0].start if parts.subject else 0
-            return before, *divided(f"{head[start:]} {text[verb[0].start :]}".strip())
-    return (text,)
+            return before, *divided(f"{_head(text, parts)} {text[verb[0].start :]}".strip())
+    return _with_otherwise(text, parts)
+
+
+def _head(text: str, parts: Outline) -> str:
+    """Subject, modal and copula of a sentence: "the output shall be"."""
+    copula = parts.predicate[:1] if lower(parts.predicate[:1]) == ("be",) else ()
+    some = (*parts.subject, *parts.modal, *copula)
+    return text[some[0].start : some[-1].start + len(some[-1].text)] if some else ""
+
+
+def _with_otherwise(text: str, parts: Outline) -> tuple[str, ...]:
+    """The demands of "if a then b, otherwise c": the second is "unless a, c"."""
+    found = _OTHERWISE.search(text)
+    conditions = [clause for clause in parts.before if clause.role is Role.WHEN and clause.words]
+    if found is None or len(conditions) != 1 or len(parts.before) > 1:
+        return (text,)
+    first, last = conditions[0].words[0], conditions[0].words[-1]
+    condition = text[first.start : last.start + len(last.text)]
+    subject = text[: parts.subject[-1].start + len(parts.subject[-1].text)] if parts.subject else ""
+    subject = subject[parts.subject[0].start :] if subject else "it"
+    other = re.sub(r"^it\b", subject, text[found.end() :].strip())
+    has_modal = bool(outline(words(other)).modal)
+    demand = other if has_modal else f"{_head(text, parts)} {other}"
+    return text[: found.start()], f"unless {condition}, {demand}"
+
+
+_OTHERWISE = re.compile(r"\s*,?\s+(?:otherwise|else)\b,?", re.IGNORECASE)
 
 
 _SHORT = 3

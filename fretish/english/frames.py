@@ -109,7 +109,7 @@ def _timed(clause: Clause, names: Vocabulary, used: Places, negated: bool) -> It
                 yield replace(base, timing=(s.For if negated else s.Within)(duration))
             case Role.FOR:
                 yield replace(base, timing=s.For(duration))
-                if negated:
+                if negated and event is None:
                     yield replace(base, demand="lasting", timing=_at(clause))
             case Role.MORE_THAN if not negated:
                 yield replace(base, timing=s.For(duration))

@@ -79,6 +79,8 @@ def responses(parts: Outline, names: Vocabulary) -> tuple[Response, ...]:
     predicate, negated, signs = _without_not(predicate)
     used = signs | places(none) | places(parts.modal)
     adverbs = (*more, *adverbs)
+    if not predicate:
+        return ()
     component, of_component = _component(subject, names)
     negated = negated != bool(none)
     if any(word.lower == "never" and word.start in signs for word in parts.predicate):
@@ -146,7 +148,7 @@ def _claim(subject: Phrase, predicate: Phrase, names: Vocabulary) -> tuple[bool,
     alone = matched(predicate, names, names.propositions)
     if content(subject) and known and not alone:
         return False, whole, "named"
-    return False, predicate or subject, ""
+    return False, predicate, ""
 
 
 def _without_no(subject: Phrase) -> tuple[Phrase, Phrase]:

@@ -112,7 +112,20 @@ OFFERED = {
     "The valve is open if and only if the tank is full": [
         "the system shall always satisfy tank_full <-> valve_open"
     ],
+    "The motor must not be started until 10 seconds after the last stop": [
+        "when last_stop the system shall for 10 seconds satisfy !motor_started"
+    ],
+    "The rover shall, when commanded, deploy its arm": [
+        "when commanded the rover shall immediately satisfy deploy_arm"
+    ],
     # Expressions
+    "The pump shall set the flow to 3 when the tank is empty": [
+        "when tank_empty the pump shall immediately satisfy flow = 3"
+    ],
+    "The flag shall be set to FALSE when the door opens": [
+        "when door_opens the system shall immediately satisfy !flag"
+    ],
+    "The output shall be limited to 100": ["the system shall always satisfy output <= 100"],
     "The speed must be between 1 m/s and 3 m/s at all times": [
         "the system shall always satisfy speed >= 1 m/s & speed <= 3 m/s"
     ],
@@ -215,6 +228,14 @@ def test_a_text_has_a_demand_for_each_sentence_and_each_verb_with_a_condition() 
         "It shall start when a is on",
         "It shall stop when a is off",
         "The lamp is red",
+    )
+    assert demands("If a is on, the pump shall stop, otherwise it shall run") == (
+        "If a is on, the pump shall stop",
+        "unless a is on, the pump shall run",
+    )
+    assert demands("The output shall be 1 when a is on and zero when a is off") == (
+        "The output shall be 1 when a is on",
+        "The output shall be zero when a is off",
     )
     assert demands("The limit is 1.5 m") == ("The limit is 1.5 m",)
 
