@@ -32,7 +32,7 @@ MOST = 24
 MOST_WORDS = 200
 """A longer sentence has no reading."""
 _MOST_TRIED = 256
-"""The largest number of combinations of clauses that are tried."""
+"""The largest number of combinations of clauses that are tried, and of readings that they make."""
 _IMMEDIATELY, _NEXT, _ALWAYS = s.Immediately(), s.Next(), s.Always()
 _EVENTUALLY, _NEVER = s.Eventually(), s.Never()
 
@@ -81,10 +81,11 @@ def readings(text: str, names: Vocabulary) -> tuple[Reading, ...]:
     if len(phrase) > MOST_WORDS or not any(carries_meaning(word) for word in phrase):
         return ()
     distinct: dict[str, Reading] = {}
-    for reading in _all(phrase, names):
-        tree = parse(Source("<text>", reading.text).span())
+    for reading in islice(_all(phrase, names), _MOST_TRIED):
+        fretish = reading.text
+        tree = None if fretish in distinct else parse(Source("<text>", fretish).span())
         if isinstance(tree, s.Sentence):
-            distinct.setdefault(reading.text, replace(reading, sentence=tree))
+            distinct[fretish] = replace(reading, sentence=tree)
     least = min((len(each.left_out) for each in distinct.values()), default=0)
     return tuple(each for each in distinct.values() if len(each.left_out) == least)[:MOST]
 

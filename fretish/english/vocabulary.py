@@ -133,8 +133,18 @@ def valued(words: Sequence[Word], names: Vocabulary) -> tuple[str, str] | None:
 def content(words: Sequence[Word]) -> tuple[Word, ...]:
     """The words that make a name: no articles, copulas and punctuation."""
     skipped = ARTICLES | COPULAS | {"of"}
-    some = tuple(w for w in words if carries_meaning(w) and w.lower not in skipped)
+    some = tuple(
+        word
+        for index, word in enumerate(words)
+        if (carries_meaning(word) and word.lower not in skipped) or _is_letter(words, index)
+    )
     return some or tuple(w for w in words if w.text.isalnum())
+
+
+def _is_letter(words: Sequence[Word], index: int) -> bool:
+    """Whether "a" is a name, as in "a is on", and no article."""
+    follows = words[index + 1].lower if index + 1 < len(words) else "is"
+    return words[index].lower == "a" and follows in COPULAS
 
 
 def new_name(words: Sequence[Word]) -> str:

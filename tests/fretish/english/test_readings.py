@@ -119,6 +119,9 @@ OFFERED = {
         "when commanded the rover shall immediately satisfy deploy_arm"
     ],
     # Expressions
+    "If a is on, b must never be a trap": [
+        "whenever a_on the system shall immediately satisfy !b_trap"
+    ],
     "The pump shall set the flow to 3 when the tank is empty": [
         "when tank_empty the pump shall immediately satisfy flow = 3"
     ],
@@ -167,6 +170,7 @@ OFFERED = {
 
 
 @each("text", OFFERED)
+@pytest.mark.slow
 def test_the_sentences_are_among_the_readings(text: str) -> None:
     offered = [reading.text for reading in readings(text, NEW)]
     assert {*OFFERED[text]} <= {*offered}
@@ -174,6 +178,7 @@ def test_the_sentences_are_among_the_readings(text: str) -> None:
 
 
 @each("text", OFFERED)
+@pytest.mark.slow
 def test_all_words_of_a_text_without_asides_are_read(text: str) -> None:
     assert all(reading.left_out == () for reading in readings(text, NEW))
 
@@ -260,6 +265,7 @@ def test_no_reading_says_the_opposite_of_the_text() -> None:
     ]
 
 
+@pytest.mark.slow
 def test_a_long_text_is_not_read_and_many_clauses_are_tried_up_to_a_limit() -> None:
     assert readings("the robot must stop when " + "a is on and " * 2000 + "b is on", NEW) == ()
     many = "the robot must stop" + " when a is on" * 30
