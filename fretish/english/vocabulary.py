@@ -148,14 +148,15 @@ def _is_letter(words: Sequence[Word], index: int) -> bool:
 
 
 def new_name(words: Sequence[Word]) -> str:
-    """A name made of all content words: `battery_low`; never a reserved word."""
+    """A name made of all content words: `battery_low`; never a reserved word.
+
+    It is quoted in a sentence if it has letters that FRETish does not.
+    """
     parts = (
         "".join(c if c.isalnum() or c == "_" else "_" for c in _small(word.text))
         for word in content(words)
     )
     name = "_".join(filter(None, (part.strip("_") for part in parts))) or "it"
-    if not name.isascii():
-        name = "".join(c if c.isascii() else "_" for c in name).strip("_") or "it"
     if not name[0].isalpha():
         name = f"n_{name}"
     return f"is_{name}" if name.lower() in RESERVED else name

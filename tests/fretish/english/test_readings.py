@@ -211,6 +211,13 @@ def test_the_names_of_a_project_are_recognized() -> None:
     )
 
 
+def test_letters_of_other_languages_stay_in_names() -> None:
+    first, *_ = readings("When the Tür is open, the Größe must be zero", NEW)
+    assert first.text == 'when "tür_open" the system shall immediately satisfy "größe" = 0'
+    known, *_ = readings("When the Tür is open, it must beep", Vocabulary(("türOpen", "tOpen")))
+    assert known.text == 'when "türOpen" the system shall immediately satisfy beep'
+
+
 def test_a_name_of_the_project_that_lacks_words_says_so() -> None:
     reading, *_ = readings("the left arm must be stopped", Vocabulary(("stopped",)))
     assert reading.names == {"stopped": "the left arm be stopped"}
