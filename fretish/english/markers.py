@@ -82,7 +82,7 @@ _TIME_MARKERS = sorted(
     ((tuple(wording.split()), role) for role, some in _TIMES for wording in some.split(";")),
     key=lambda each: -len(each[0]),
 )
-_SINCE = ("of", "after", "from", "since", "when", "once", "upon", "following")
+_SINCE = ("of", "after", "from", "since", "following")
 _MODES = frozenset({"mode", "state", "phase"})
 
 

@@ -12,7 +12,7 @@ from fretish.classes.frozen import dataclass
 from fretish.diagnostics.source import Source
 from fretish.english.amounts import Time
 from fretish.english.clauses import divided, outlines
-from fretish.english.frames import HOLDING, TRIGGER, Frame, frames, uses
+from fretish.english.frames import HOLDING, TRIGGER, Effect, Frame, frames, uses
 from fretish.english.responses import Adverb, Response, responses
 from fretish.english.vocabulary import Vocabulary, lacking
 from fretish.english.words import (
@@ -144,15 +144,16 @@ def _demands(response: Response, frame: Frame) -> Iterator[_Demand]:
     """Condition, timing and response: several if the text leaves the timing open."""
     part = response.part
     condition = frame.condition
-    if "lasting" in frame.demands:
-        assert isinstance(frame.timing, s.Within)
+    if frame.effect is Effect.LASTING:
+        assert isinstance(frame.timing, s.For)
         yield from _lasting(response, frame, frame.timing.duration)
         return
-    if "iff" in frame.demands and condition is not None:
+    if frame.effect is Effect.IFF and condition is not None:
         said = part.negated().expression if response.negated else part.expression
-        yield None, _ALWAYS, e.Iff(condition.expression, said), _NOWHERE
+        always = [some for adverb, some in response.adverbs if adverb is Adverb.ALWAYS]
+        yield None, _ALWAYS, e.Iff(condition.expression, said), _NOWHERE.union(*always)
         return
-    only = "only" in frame.demands
+    only = frame.effect is Effect.ONLY
     negated = response.negated != only
     expression = part.negated().expression if negated else part.expression
     for adverb, places in response.adverbs or ((None, _NOWHERE),):

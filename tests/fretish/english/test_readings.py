@@ -262,9 +262,16 @@ def test_no_reading_says_the_opposite_of_the_text() -> None:
     for text in (
         "The pump shall not run every 5 seconds",
         "The pump shall not run after 5 seconds",
-        "It may rain if and only if a1 is on when b1 is on",
+        "The pump shall run if and only if a1 is on when b1 is on",
+        "The pump shall run within 2 s if and only if a1 is on",
+        "The pump shall beep every 5 s after a1 is on",
+        "The pump shall not run for at most 5 s",
+        "The pump may only run for at most 5 s when a1 is on",
     ):
         assert readings(text, NEW) == ()
+    assert [r.text for r in readings("While m1 is on, a1 is on if and only if b1 is on", NEW)] == [
+        "in m1_on mode, the system shall always satisfy b1_on <-> a1_on"
+    ]
     only = [r.text for r in readings("The robot may only start after the gate opens", NEW)]
     assert only == [
         "the robot shall until gate_opens satisfy !start",
