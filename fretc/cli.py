@@ -52,6 +52,7 @@ _GROUPS = {
         "play": ("play:play", "Make a page on which you edit a trace and see the verdicts."),
         "fmt": ("formalize:fmt", "Rewrite sentences in canonical wording."),
         "import": ("formalize:import_", "Import requirements that FRET has exported."),
+        "lsp": ("lsp:lsp", "Serve an editor: diagnostics, fixes, completion, rename."),
     },
     "Audit runs": {
         "audit": ("audit:audit", "Check recorded runs against the requirements."),

@@ -56,6 +56,7 @@ LINES: tuple[tuple[str, ...], ...] = (
     ("watch", "json.mcap", *SMALL),
     ("simulate", "--list"),
     ("completion", "bash"),
+    ("lsp",),
     ("sign", "build/evidence.json", "--key", "key"),
     ("lock", "--reviewer", "B", "--role", "r", "--comment", "c", "--key", "key"),
     ("verify-evidence", "--signed-by", "key"),
