@@ -57,12 +57,13 @@ def vocabulary(declarations: Declarations | None, components: Iterable[str] = ()
     own = tuple(dict.fromkeys(components))
     if declarations is None:
         return Vocabulary(components=own)
-    signals = declarations.signals
+    signals = declarations.measured
+    values = {name: each.values for name, each in declarations.signals.items() if each.values}
     variables = [name for name in declarations.variables if name not in declarations.propositions]
     return Vocabulary(
         (*declarations.propositions, *variables),
-        tuple(name for name, signal in signals.items() if not signal.values),
-        {name: signal.values for name, signal in signals.items() if signal.values},
+        tuple(name for name in signals if name not in values),
+        values,
         own,
     )
 

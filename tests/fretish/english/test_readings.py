@@ -205,6 +205,9 @@ def test_the_names_of_a_project_are_recognized() -> None:
     assert first("when pressed, the drone shall close valve 0").endswith("satisfy !valve_0")
     assert first("when pressed, the drone shall open valve 0").endswith("satisfy valve_0")
     assert first("the arm must always be moving").endswith("always satisfy !arm_stopped")
+    assert first("the rover must always be in docking mode") == (
+        'the rover shall always satisfy "mode" = docking'
+    )
     assert first("the speed limit must never exceed 3").endswith("never satisfy speedLimit > 3")
     assert first("in docking mode the drone must never beep") == (
         'while "mode" = docking, the drone shall never satisfy beep'
@@ -219,8 +222,8 @@ def test_letters_of_other_languages_stay_in_names() -> None:
 
 
 def test_a_name_of_the_project_that_lacks_words_says_so() -> None:
-    reading, *_ = readings("the left arm must be stopped", Vocabulary(("stopped",)))
-    assert reading.names == {"stopped": "the left arm be stopped"}
+    reading, *_ = readings("if the left arm is stopped, it must beep", Vocabulary(("stopped",)))
+    assert reading.names == {"stopped": "the left arm is stopped", "beep": "beep"}
     assert reading.lacking == {"stopped": ("left", "arm")}
 
 
