@@ -77,12 +77,14 @@ def outline(words: Phrase) -> Outline:
 
 def _modal(words: Phrase) -> tuple[int, int]:
     """Index and length of the modal; without one, where the main clause begins."""
-    said, depth = lower(words), 0
-    for index, word in enumerate(said):
-        depth += (word == "(") - (word == ")")
-        for modal in MODALS if depth == 0 else ():
-            if said[index : index + len(modal)] == modal and _may_be_modal(said, index):
-                return index, len(modal)
+    said = lower(words)
+    found = [*_modals(said)]
+    if found and _opens(words):  # "if it must stop, the lamp shall be on"
+        commas = [i for i, word in enumerate(said) if word in (",", "then")]
+        later = [each for each in found if commas and each[0] > commas[0]]
+        return later[0] if later else found[-1]
+    if found:
+        return found[0]
     for index, word in enumerate(said):
         if word in ("always", "never"):
             return index, 0
@@ -90,8 +92,21 @@ def _modal(words: Phrase) -> tuple[int, int]:
     return (commas[-1] + 1 if commas and marker(words, 0) else 0), 0
 
 
+def _modals(said: tuple[str, ...]) -> Iterator[tuple[int, int]]:
+    """Index and length of each modal outside of parentheses, but for those after "which"."""
+    depth = 0
+    for index, word in enumerate(said):
+        depth += (word == "(") - (word == ")")
+        for modal in MODALS if depth == 0 else ():
+            if said[index : index + len(modal)] == modal and _may_be_modal(said, index):
+                yield index, len(modal)
+                break
+
+
 def _may_be_modal(said: tuple[str, ...], index: int) -> bool:
     """Only a forbidden "may" or "can" demands something; "it can" permits."""
+    if index and said[index - 1] in ("which", "that", "who"):
+        return False
     return said[index] not in ("can", "may") or said[index + 1 : index + 2] in (
         ("not",),
         ("never",),

@@ -118,6 +118,9 @@ OFFERED = {
     "The rover shall, when commanded, deploy its arm": [
         "when commanded the rover shall immediately satisfy deploy_arm"
     ],
+    "If the robot must stop, the lamp shall be on": [
+        "when robot_must_stop the system shall immediately satisfy lamp_on"
+    ],
     # Expressions
     "If a is on, b must never be a trap": [
         "whenever a_on the system shall immediately satisfy !b_trap"
