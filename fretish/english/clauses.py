@@ -170,7 +170,7 @@ def _without_comma(words: Phrase) -> tuple[Phrase, Phrase]:
 
 def _inner(words: Phrase) -> list[Clause]:
     """The clauses in a piece that begins with a marker: "when a and while b"."""
-    clauses, start, is_or = list[Clause](), 0, False
+    clauses, start, either = list[Clause](), 0, words[:0]
     said = lower(words)
     first = marker(words, 0)
     index = len(first[0]) if first else 1
@@ -179,27 +179,33 @@ def _inner(words: Phrase) -> list[Clause]:
         found = marker(words, index)
         joined = said[index - 1] in ("and", "or")
         if found and (joined or found[1] is Role.WHILE or found[0] in _MOMENTS):
-            cuts.append((index - joined, index, joined and said[index - 1] == "or"))
+            cuts.append((index - joined, index, _or_before(words, index)))
             index += len(found[0])
         index += 1
-    for end, following, joins in [*cuts, (len(words), len(words), False)]:
-        clauses.append(_clause(words[start:end], is_or=is_or))
-        start, is_or = following, joins
+    for end, following, joins in [*cuts, (len(words), len(words), words[:0])]:
+        clauses.append(_clause(words[start:end], either))
+        start, either = following, joins
     return clauses
 
 
-def _clause(words: Phrase, *, is_or: bool) -> Clause:
+def _or_before(words: Phrase, index: int) -> Phrase:
+    """The word "or" before a place, if it is there."""
+    before = words[max(0, index - 1) : index]
+    return before if lower(before) == ("or",) else ()
+
+
+def _clause(words: Phrase, either: Phrase) -> Clause:
     time = time_clause(words, 0)
     if time is not None:
         clause, end = time
         rest = words[end:]
-        return replace(clause, words=rest, is_or=is_or)
+        return replace(clause, words=rest, either=either)
     found = marker(words, 0)
     if found is None:
-        return Clause(Role.WHEN, (), words, None, is_or)
+        return Clause(Role.WHEN, (), words, None, either)
     length = len(found[0])
     keep = 0 if found[0] != ("in",) else 1
-    return Clause(found[1], words[:length], words[max(length, keep) :], None, is_or)
+    return Clause(found[1], words[:length], words[max(length, keep) :], None, either)
 
 
 # After the component ---------------------------------------------------------------------------
@@ -215,8 +221,8 @@ def _suffix(words: Phrase) -> tuple[Phrase, tuple[Clause, ...]]:
     for (start, clause), end in zip(starts, ends, strict=True):
         length = len(clause.marker) + (len(clause.time.used) if clause.time else 0)
         rest = words[start + length : end]
-        is_or = bool(clauses) and lower(words[start - 1 : start]) == ("or",)
-        clauses.append(replace(clause, words=_trimmed(rest), is_or=is_or))
+        either = _or_before(words, start) if clauses else ()
+        clauses.append(replace(clause, words=_trimmed(rest), either=either))
     core = words[: starts[0][0]] if starts else words
     if starts and starts[0][0] == 0 and clauses:
         core, clauses[0] = _at_front(clauses[0])

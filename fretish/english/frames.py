@@ -51,7 +51,7 @@ def uses(clause: Clause, names: Vocabulary, *, negated: bool) -> Iterator[Use]:
         names: the names of the project.
         negated: whether the main clause forbids.
     """
-    used = places(clause.marker)
+    used = places((*clause.marker, *clause.either))
     if clause.time is not None:
         used |= clause.time.used
         yield from _timed(clause, names, used, negated)
@@ -172,7 +172,7 @@ def frames(clauses: Sequence[Clause], uses: tuple[Use, ...], response: Response)
     others = [use for _, use in pairs if use.condition and use not in events]
     if whole.effect is not None:
         return
-    if events and others and not any(clause.is_or or clause.time for clause in clauses):
+    if events and others and not any(clause.either or clause.time for clause in clauses):
         upon = _frame(
             [clause for clause, use in pairs if use not in others],
             tuple(use for use in uses if use not in others),
@@ -189,6 +189,8 @@ def _frame(clauses: Iterable[Clause], uses: tuple[Use, ...], response: Response)
     scopes, timings = [u for u in uses if u.scope], [u for u in uses if u.timing]
     scopes, conditions = _conditions(scopes, [*zip(clauses, uses, strict=True)], response)
     if len(scopes) > 1 or len(timings) > 1:
+        return None
+    if not _joins_conditions(clauses, uses):
         return None
     effects = [use.effect for use in uses if use.effect]
     if len(effects) > 1 or (Effect.IFF in effects and not _is_alone(uses, response)):
@@ -209,6 +211,20 @@ def _frame(clauses: Iterable[Clause], uses: tuple[Use, ...], response: Response)
     )
 
 
+def _joins_conditions(clauses: Iterable[Clause], uses: Sequence[Use]) -> bool:
+    """Whether each "or" stands between conditions, which alone can be joined so.
+
+    "Unless p or unless q" may mean either, and is refused.
+    """
+    before: Use | None = None
+    for clause, use in zip(clauses, uses, strict=True):
+        is_joined = use.condition and before and before.condition
+        if clause.either and (clause.role is Role.UNLESS or not is_joined):
+            return False
+        before = use
+    return True
+
+
 def _is_alone(uses: Iterable[Use], response: Response) -> bool:
     """Whether "if and only if" is the only condition, and no other timing is there."""
     others = [use for use in uses if use.effect is not Effect.IFF]
@@ -224,7 +240,9 @@ def _conditions(
     if len(scopes) > 1:
         extra = [use for use in scopes if use.scope is s.ScopeKind.IN][1:]
         kept = [use for use in scopes if use not in extra]
-    parts = [(use.part, use.condition, clause.is_or) for clause, use in uses if use.condition]
+    parts = [
+        (use.part, use.condition, bool(clause.either)) for clause, use in uses if use.condition
+    ]
     parts += [(use.part, HOLDING, False) for use in extra]
     if response.condition is not None:
         kinds = {kind for _, kind, _ in parts}

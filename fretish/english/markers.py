@@ -94,8 +94,8 @@ class Clause:
     marker: Phrase
     words: Phrase = ()
     time: Time | None = None
-    is_or: bool = False
-    """Whether "or" joins it to the clause before."""
+    either: Phrase = ()
+    """The word "or" that joins it to the clause before; empty: it is joined by "and"."""
     is_since: bool = False
     """Whether `words` are the event from which `time` counts."""
 

@@ -121,7 +121,35 @@ OFFERED = {
     "If the robot must stop, the lamp shall be on": [
         "when robot_must_stop the system shall immediately satisfy lamp_on"
     ],
+    "After the button is pressed, the door must not open within 3 s": [
+        "when button_pressed the door shall for 3 seconds satisfy !open"
+    ],
     # Expressions
+    "When p is on or when q is on, it shall beep": [
+        "when p_on | q_on the system shall immediately satisfy beep"
+    ],
+    "It shall beep if p is on or if q is on": [
+        "when p_on | q_on the system shall immediately satisfy beep"
+    ],
+    "It shall beep if p is on and when q is on": [
+        "when p_on & q_on the system shall immediately satisfy beep"
+    ],
+    "The error must be at least -0.2": ["the system shall always satisfy error >= -0.2"],
+    "The fan may only run if x is below 5": [
+        "whenever x >= 5 the fan shall immediately satisfy !run"
+    ],
+    "The fan may only run if x is equal to 5": [
+        "whenever x != 5 the fan shall immediately satisfy !run"
+    ],
+    "The fan may only run if x is more than 5": [
+        "whenever x <= 5 the fan shall immediately satisfy !run"
+    ],
+    "The fan may only run if x is at most 5": [
+        "whenever x > 5 the fan shall immediately satisfy !run"
+    ],
+    "The fan may only run if x is no less than 5": [
+        "whenever x < 5 the fan shall immediately satisfy !run"
+    ],
     "If a is on, b must never be a trap": [
         "whenever a_on the system shall immediately satisfy !b_trap"
     ],
@@ -272,6 +300,8 @@ def test_no_reading_says_the_opposite_of_the_text() -> None:
         "The pump shall run within 2 s if and only if a1 is on",
         "The pump shall beep every 5 s after a1 is on",
         "The pump shall not run for at most 5 s",
+        "The pump shall run whenever a1 is on or while b1 is on",
+        "The pump shall run unless a1 is on or unless b1 is on",
         "The pump may only run for at most 5 s when a1 is on",
     ):
         assert readings(text, NEW) == ()
