@@ -9,7 +9,7 @@ from itertools import pairwise
 
 from fretish.classes.frozen import dataclass
 from fretish.english.markers import Clause, Role, marker, time_clause
-from fretish.english.words import COPULAS, Phrase, lower, words
+from fretish.english.words import COPULAS, Phrase, Word, lower, words
 
 MODALS = tuple(
     tuple(modal.split())
@@ -130,11 +130,14 @@ def _prefix(words: Phrase) -> tuple[tuple[Clause, ...], Phrase]:
     if timed is not None and not timed[0].is_since:
         conditions, subject = [*conditions, subject[: timed[1]]], subject[timed[1] :]
     clauses: list[Clause] = []
+    is_listed = any(lower(piece[:1]) in (("and",), ("or",)) for piece in conditions)
     for piece in conditions:
         clauses += _inner(piece) if _opens(piece) or not clauses else ()
         if clauses and not _opens(piece):
             last = clauses[-1]
-            clauses[-1] = replace(last, words=(*last.words, *piece))
+            follows = lower(piece[:1]) in (("and",), ("or",))
+            comma = () if follows else (Word("," if is_listed else "and", piece[0].start - 1),)
+            clauses[-1] = replace(last, words=(*last.words, *comma, *piece))
     return tuple(clauses), subject
 
 

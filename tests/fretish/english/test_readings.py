@@ -128,6 +128,12 @@ OFFERED = {
     "When p is on or when q is on, it shall beep": [
         "when p_on | q_on the system shall immediately satisfy beep"
     ],
+    "If p is on, q is on, the lamp shall be red": [
+        "when p_on & q_on the system shall immediately satisfy lamp_red"
+    ],
+    "If p is on, q is on, or r is on, the lamp shall be red": [
+        "when p_on | q_on | r_on the system shall immediately satisfy lamp_red",
+    ],
     "It shall beep if p is on or if q is on": [
         "when p_on | q_on the system shall immediately satisfy beep"
     ],
