@@ -133,7 +133,7 @@ def _prefix(words: Phrase) -> tuple[tuple[Clause, ...], Phrase]:
     is_listed = any(lower(piece[:1]) in (("and",), ("or",)) for piece in conditions)
     for piece in conditions:
         clauses += _inner(piece) if _opens(piece) or not clauses else ()
-        if clauses and not _opens(piece):
+        if clauses and piece and not _opens(piece):
             last = clauses[-1]
             follows = lower(piece[:1]) in (("and",), ("or",))
             comma = () if follows else (Word("," if is_listed else "and", piece[0].start - 1),)

@@ -168,7 +168,7 @@ def frames(clauses: Sequence[Clause], uses: tuple[Use, ...], response: Response)
         return
     yield whole
     pairs = [*zip(clauses, uses, strict=True)]
-    events = [use for clause, use in pairs if clause.role is Role.UPON]
+    events = [use for clause, use in pairs if clause.role is Role.UPON and use.condition]
     others = [use for _, use in pairs if use.condition and use not in events]
     if whole.effect is not None:
         return

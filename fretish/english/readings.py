@@ -165,10 +165,11 @@ def _demands(response: Response, frame: Frame) -> Iterator[_Demand]:
                 continue
             if only and condition and timing == _NEXT:
                 continue
-            if timing == _NEVER:
+            if frame.premise is not None:
+                if timing != _NEVER:
+                    yield own, timing, e.Implies(frame.premise, expression), places
+            elif timing == _NEVER:
                 yield own, _NEVER, part.expression, places
-            elif frame.premise is not None:
-                yield own, timing, e.Implies(frame.premise, expression), places
             else:
                 yield own, timing, expression, places
 

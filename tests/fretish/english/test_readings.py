@@ -314,6 +314,8 @@ def test_no_reading_says_the_opposite_of_the_text() -> None:
     assert [r.text for r in readings("While m1 is on, a1 is on if and only if b1 is on", NEW)] == [
         "in m1_on mode, the system shall always satisfy b1_on <-> a1_on"
     ]
+    upon = readings("The lamp must never be red if p is on at the time of departure", NEW)
+    assert all("p_on" in reading.text for reading in upon)
     only = [r.text for r in readings("The robot may only start after the gate opens", NEW)]
     assert only == [
         "the robot shall until gate_opens satisfy !start",
@@ -350,7 +352,8 @@ def parts_of(text: str) -> set[str]:
 def test_each_made_up_word_is_in_each_reading_or_named(text: str) -> None:
     said = parts_of(" ".join(word for word in text.split() if word in MADE_UP))
     for reading in readings(text, NEW):
-        named = " ".join([reading.text, *reading.left_out])
+        lacking = (word for some in reading.lacking.values() for word in some)
+        named = " ".join([reading.text, *reading.left_out, *lacking])
         assert said <= parts_of(named), (text, reading)
 
 
