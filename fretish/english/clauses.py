@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import pairwise
 
 from fretish.classes.frozen import dataclass
 from fretish.english.markers import Clause, Role, marker, time_clause
-from fretish.english.words import COPULAS, Phrase, lower, words
+from fretish.english.words import COPULAS, Phrase, Word, lower, words
 
 MODALS = tuple(
     tuple(modal.split())
@@ -76,12 +77,14 @@ def outline(words: Phrase) -> Outline:
 
 def _modal(words: Phrase) -> tuple[int, int]:
     """Index and length of the modal; without one, where the main clause begins."""
-    said, depth = lower(words), 0
-    for index, word in enumerate(said):
-        depth += (word == "(") - (word == ")")
-        for modal in MODALS if depth == 0 else ():
-            if said[index : index + len(modal)] == modal and _may_be_modal(said, index):
-                return index, len(modal)
+    said = lower(words)
+    found = [*_modals(said)]
+    if found and _opens(words):  # "if it must stop, the lamp shall be on"
+        commas = [i for i, word in enumerate(said) if word in (",", "then")]
+        later = [each for each in found if commas and each[0] > commas[0]]
+        return later[0] if later else found[-1]
+    if found:
+        return found[0]
     for index, word in enumerate(said):
         if word in ("always", "never"):
             return index, 0
@@ -89,8 +92,21 @@ def _modal(words: Phrase) -> tuple[int, int]:
     return (commas[-1] + 1 if commas and marker(words, 0) else 0), 0
 
 
+def _modals(said: tuple[str, ...]) -> Iterator[tuple[int, int]]:
+    """Index and length of each modal outside of parentheses, but for those after "which"."""
+    depth = 0
+    for index, word in enumerate(said):
+        depth += (word == "(") - (word == ")")
+        for modal in MODALS if depth == 0 else ():
+            if said[index : index + len(modal)] == modal and _may_be_modal(said, index):
+                yield index, len(modal)
+                break
+
+
 def _may_be_modal(said: tuple[str, ...], index: int) -> bool:
     """Only a forbidden "may" or "can" demands something; "it can" permits."""
+    if index and said[index - 1] in ("which", "that", "who"):
+        return False
     return said[index] not in ("can", "may") or said[index + 1 : index + 2] in (
         ("not",),
         ("never",),
@@ -114,11 +130,14 @@ def _prefix(words: Phrase) -> tuple[tuple[Clause, ...], Phrase]:
     if timed is not None and not timed[0].is_since:
         conditions, subject = [*conditions, subject[: timed[1]]], subject[timed[1] :]
     clauses: list[Clause] = []
+    is_listed = any(lower(piece[:1]) in (("and",), ("or",)) for piece in conditions)
     for piece in conditions:
         clauses += _inner(piece) if _opens(piece) or not clauses else ()
-        if clauses and not _opens(piece):
+        if clauses and piece and not _opens(piece):
             last = clauses[-1]
-            clauses[-1] = replace(last, words=(*last.words, *piece))
+            follows = lower(piece[:1]) in (("and",), ("or",))
+            comma = () if follows else (Word("," if is_listed else "and", piece[0].start - 1),)
+            clauses[-1] = replace(last, words=(*last.words, *comma, *piece))
     return tuple(clauses), subject
 
 
@@ -154,7 +173,7 @@ def _without_comma(words: Phrase) -> tuple[Phrase, Phrase]:
 
 def _inner(words: Phrase) -> list[Clause]:
     """The clauses in a piece that begins with a marker: "when a and while b"."""
-    clauses, start, is_or = list[Clause](), 0, False
+    clauses, start, either = list[Clause](), 0, words[:0]
     said = lower(words)
     first = marker(words, 0)
     index = len(first[0]) if first else 1
@@ -163,27 +182,33 @@ def _inner(words: Phrase) -> list[Clause]:
         found = marker(words, index)
         joined = said[index - 1] in ("and", "or")
         if found and (joined or found[1] is Role.WHILE or found[0] in _MOMENTS):
-            cuts.append((index - joined, index, joined and said[index - 1] == "or"))
+            cuts.append((index - joined, index, _or_before(words, index)))
             index += len(found[0])
         index += 1
-    for end, following, joins in [*cuts, (len(words), len(words), False)]:
-        clauses.append(_clause(words[start:end], is_or=is_or))
-        start, is_or = following, joins
+    for end, following, joins in [*cuts, (len(words), len(words), words[:0])]:
+        clauses.append(_clause(words[start:end], either))
+        start, either = following, joins
     return clauses
 
 
-def _clause(words: Phrase, *, is_or: bool) -> Clause:
+def _or_before(words: Phrase, index: int) -> Phrase:
+    """The word "or" before a place, if it is there."""
+    before = words[max(0, index - 1) : index]
+    return before if lower(before) == ("or",) else ()
+
+
+def _clause(words: Phrase, either: Phrase) -> Clause:
     time = time_clause(words, 0)
     if time is not None:
         clause, end = time
         rest = words[end:]
-        return replace(clause, words=rest, is_or=is_or)
+        return replace(clause, words=rest, either=either)
     found = marker(words, 0)
     if found is None:
-        return Clause(Role.WHEN, (), words, None, is_or)
+        return Clause(Role.WHEN, (), words, None, either)
     length = len(found[0])
     keep = 0 if found[0] != ("in",) else 1
-    return Clause(found[1], words[:length], words[max(length, keep) :], None, is_or)
+    return Clause(found[1], words[:length], words[max(length, keep) :], None, either)
 
 
 # After the component ---------------------------------------------------------------------------
@@ -191,14 +216,16 @@ def _clause(words: Phrase, *, is_or: bool) -> Clause:
 
 def _suffix(words: Phrase) -> tuple[Phrase, tuple[Clause, ...]]:
     """What the component shall do, and the clauses after it."""
+    while lower(words[:1]) == (",",):
+        words = words[1:]
     starts = [*_starts(words)]
     ends = [*(start for start, _ in starts), len(words)][1:]
     clauses: list[Clause] = []
     for (start, clause), end in zip(starts, ends, strict=True):
         length = len(clause.marker) + (len(clause.time.used) if clause.time else 0)
         rest = words[start + length : end]
-        is_or = bool(clauses) and lower(words[start - 1 : start]) == ("or",)
-        clauses.append(replace(clause, words=_trimmed(rest), is_or=is_or))
+        either = _or_before(words, start) if clauses else ()
+        clauses.append(replace(clause, words=_trimmed(rest), either=either))
     core = words[: starts[0][0]] if starts else words
     if starts and starts[0][0] == 0 and clauses:
         core, clauses[0] = _at_front(clauses[0])
@@ -275,10 +302,34 @@ def divided(text: str) -> tuple[str, ...]:
         verb = clause.words[cut + 1 :]
         if cut and 0 < len(verb) <= _SHORT and not {*lower(verb)} & COPULAS and following.marker:
             before = text[: clause.words[cut].start].rstrip(" ,")
-            head = text[: parts.modal[-1].start + len(parts.modal[-1].text)] if parts.modal else ""
-            start = parts.subject[0].start if parts.subject else 0
-            return before, *divided(f"{head[start:]} {text[verb[0].start :]}".strip())
-    return (text,)
+            return before, *divided(f"{_head(text, parts)} {text[verb[0].start :]}".strip())
+    return _with_otherwise(text, parts)
+
+
+def _head(text: str, parts: Outline) -> str:
+    """Subject, modal and copula of a sentence: "the output shall be"."""
+    copula = parts.predicate[:1] if lower(parts.predicate[:1]) == ("be",) else ()
+    some = (*parts.subject, *parts.modal, *copula)
+    return text[some[0].start : some[-1].start + len(some[-1].text)] if some else ""
+
+
+def _with_otherwise(text: str, parts: Outline) -> tuple[str, ...]:
+    """The demands of "if a then b, otherwise c": the second is "unless a, c"."""
+    found = _OTHERWISE.search(text)
+    conditions = [clause for clause in parts.before if clause.role is Role.WHEN and clause.words]
+    if found is None or len(conditions) != 1 or len(parts.before) > 1:
+        return (text,)
+    first, last = conditions[0].words[0], conditions[0].words[-1]
+    condition = text[first.start : last.start + len(last.text)]
+    subject = text[: parts.subject[-1].start + len(parts.subject[-1].text)] if parts.subject else ""
+    subject = subject[parts.subject[0].start :] if subject else "it"
+    other = re.sub(r"^it\b", subject, text[found.end() :].strip())
+    has_modal = bool(outline(words(other)).modal)
+    demand = other if has_modal else f"{_head(text, parts)} {other}"
+    return text[: found.start()], f"unless {condition}, {demand}"
+
+
+_OTHERWISE = re.compile(r"\s*,?\s+(?:otherwise|else)\b,?", re.IGNORECASE)
 
 
 _SHORT = 3

@@ -11,7 +11,8 @@ from fretish.english.words import COPULAS, Phrase, lower, places, text
 
 _WORDINGS: dict[e.ComparisonOperator, str] = {
     "<=": "less than or equal to; smaller than or equal to; lower than or equal to; at most; "
-    "no more than; not more than; no greater than; not greater than; no higher than; up to; <=; ≤",
+    "no more than; not more than; no greater than; not greater than; no higher than; up to; "
+    "limited to; restricted to; <=; ≤",
     ">=": "greater than or equal to; more than or equal to; higher than or equal to; at least; "
     "no less than; not less than; no lower than; not lower than; >=; ≥",
     "<": "less than; lower than; smaller than; fewer than; falls below; drops below; fall below; "
@@ -39,9 +40,13 @@ class _Sides:
 
 def comparison(phrase: Phrase, names: Vocabulary) -> Part | None:
     """The comparison that a phrase states; None if it states none."""
-    sides = _sides(phrase)
+    sides = _assigned(phrase) or _sides(phrase)
     if sides is None:
         return _between(phrase, names) or _is_number(phrase, names)
+    truth = lower(content(sides.right))
+    if sides.op in ("=", "!=") and truth in (("true",), ("false",)) and content(sides.left):
+        variable = _left(sides.left, names).using(places((*sides.words, *sides.right)))
+        return variable if (sides.op == "=") == (truth == ("true",)) else variable.negated()
     right, trailing = _right(sides.right, names)
     if right is None or not content(sides.left):
         return None
@@ -49,6 +54,17 @@ def comparison(phrase: Phrase, names: Vocabulary) -> Part | None:
     if trailing and _is_new(left, names):
         left = _left((*sides.left, *trailing), names)
     return _compared(sides.op, left, right, sides.words)
+
+
+def _assigned(phrase: Phrase) -> _Sides | None:
+    """The sides of "set the flow to 3"."""
+    said = lower(phrase)
+    if said[:1] != ("set",) or "to" not in said[2:]:
+        return None
+    to = len(said) - 1 - said[::-1].index("to")
+    if to + 1 == len(said):
+        return None
+    return _Sides("=", phrase[1:to], (phrase[0], phrase[to]), phrase[to + 1 :])
 
 
 def _is_new(left: Part, names: Vocabulary) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from enum import Enum, auto
 
 from fretish import expressions as e
 from fretish import syntax as s
@@ -16,6 +17,17 @@ from fretish.english.vocabulary import Vocabulary
 from fretish.english.words import Places, places
 
 
+class Effect(Enum):
+    """What a clause does to the response."""
+
+    ONLY = auto()
+    """It is forbidden where the clause does not allow it."""
+    IFF = auto()
+    """It is true exactly where the clause is."""
+    LASTING = auto()
+    """It must not last longer than the duration of `timing`, a `For`."""
+
+
 @dataclass(frozen=True, slots=True)
 class Use:
     """One use of a clause: as scope, condition, timing, or change of the response."""
@@ -25,8 +37,7 @@ class Use:
     part: Part | None = None
     timing: s.Timing | None = None
     used: Places = frozenset()
-    demand: str = ""
-    """`only`: the response is forbidden where the part is false; `lasting`: it must not last."""
+    effect: Effect | None = None
 
 
 TRIGGER, HOLDING = s.ConditionKind.TRIGGER, s.ConditionKind.HOLDING
@@ -40,7 +51,7 @@ def uses(clause: Clause, names: Vocabulary, *, negated: bool) -> Iterator[Use]:
         names: the names of the project.
         negated: whether the main clause forbids.
     """
-    used = places(clause.marker)
+    used = places((*clause.marker, *clause.either))
     if clause.time is not None:
         used |= clause.time.used
         yield from _timed(clause, names, used, negated)
@@ -81,15 +92,17 @@ def _plain(role: Role, part: Part, negated: bool) -> Iterator[Use]:
         case Role.EXCEPT:
             yield Use(scope=kind.NOT_IN)
         case Role.IFF:
-            yield Use(demand="iff", condition=HOLDING)
+            yield Use(effect=Effect.IFF, condition=HOLDING)
         case Role.ONLY_WHEN:
-            yield Use(demand="only", condition=HOLDING, part=part.negated())
+            yield Use(effect=Effect.ONLY, condition=HOLDING, part=part.negated())
         case Role.ONLY_AFTER:
-            yield Use(demand="only", timing=s.Until(part.expression))
-            yield Use(scope=kind.ONLY_AFTER)
+            yield Use(effect=Effect.ONLY, timing=s.Until(part.expression))
+            if not negated:
+                yield Use(scope=kind.ONLY_AFTER)
         case Role.ONLY_BEFORE:
-            yield Use(demand="only", condition=TRIGGER)
-            yield Use(scope=kind.ONLY_BEFORE)
+            yield Use(effect=Effect.ONLY, condition=TRIGGER)
+            if not negated:
+                yield Use(scope=kind.ONLY_BEFORE)
         case _:
             return
 
@@ -109,13 +122,15 @@ def _timed(clause: Clause, names: Vocabulary, used: Places, negated: bool) -> It
                 yield replace(base, timing=(s.For if negated else s.Within)(duration))
             case Role.FOR:
                 yield replace(base, timing=s.For(duration))
-                if negated:
-                    yield replace(base, demand="lasting", timing=_at(clause))
+                if negated and event is None:
+                    yield replace(base, effect=Effect.LASTING, timing=s.For(duration))
             case Role.MORE_THAN if not negated:
                 yield replace(base, timing=s.For(duration))
+            case Role.EVERY | Role.AFTER_TIME | Role.AT_MOST if negated:
+                return
             case Role.MORE_THAN | Role.AT_MOST:
-                yield replace(base, demand="lasting", timing=_at(clause))
-            case Role.EVERY | Role.AFTER_TIME if negated:
+                yield replace(base, effect=Effect.LASTING, timing=s.For(duration))
+            case Role.EVERY if event:
                 return
             case Role.EVERY:
                 true = Part(e.Truth(True), frozenset())
@@ -124,12 +139,6 @@ def _timed(clause: Clause, names: Vocabulary, used: Places, negated: bool) -> It
                 yield replace(base, timing=s.After(duration))
                 if event:
                     yield replace(base, timing=s.Within(duration))
-
-
-def _at(clause: Clause) -> s.Timing:
-    """`never`, which holds the duration until `_demand` puts it into the response."""
-    assert clause.time is not None
-    return s.Within(clause.time.duration)
 
 
 # Their combination -----------------------------------------------------------------------------
@@ -144,7 +153,7 @@ class Frame:
     timing: s.Timing | None
     used: Places
     names: Mapping[str, str]
-    demands: tuple[str, ...]
+    effect: Effect | None
     premise: e.Expression | None = None
     """What must be true at the trigger for the response to be demanded."""
 
@@ -159,11 +168,11 @@ def frames(clauses: Sequence[Clause], uses: tuple[Use, ...], response: Response)
         return
     yield whole
     pairs = [*zip(clauses, uses, strict=True)]
-    events = [use for clause, use in pairs if clause.role is Role.UPON]
+    events = [use for clause, use in pairs if clause.role is Role.UPON and use.condition]
     others = [use for _, use in pairs if use.condition and use not in events]
-    if whole.demands:
+    if whole.effect is not None:
         return
-    if events and others and not any(clause.is_or or clause.time for clause in clauses):
+    if events and others and not any(clause.either or clause.time for clause in clauses):
         upon = _frame(
             [clause for clause, use in pairs if use not in others],
             tuple(use for use in uses if use not in others),
@@ -181,7 +190,10 @@ def _frame(clauses: Iterable[Clause], uses: tuple[Use, ...], response: Response)
     scopes, conditions = _conditions(scopes, [*zip(clauses, uses, strict=True)], response)
     if len(scopes) > 1 or len(timings) > 1:
         return None
-    if any(use.demand == "iff" for use in uses) and sum(use.part is not None for use in uses) > 1:
+    if not _joins_conditions(clauses, uses):
+        return None
+    effects = [use.effect for use in uses if use.effect]
+    if len(effects) > 1 or (Effect.IFF in effects and not _is_alone(uses, response)):
         return None
     used = frozenset[int]().union(*(use.used for use in uses))
     parts = [use.part for use in uses if use.part]
@@ -195,8 +207,28 @@ def _frame(clauses: Iterable[Clause], uses: tuple[Use, ...], response: Response)
         timings[0].timing if timings else None,
         used,
         names,
-        tuple(use.demand for use in uses if use.demand),
+        effects[0] if effects else None,
     )
+
+
+def _joins_conditions(clauses: Iterable[Clause], uses: Sequence[Use]) -> bool:
+    """Whether each "or" stands between conditions, which alone can be joined so.
+
+    "Unless p or unless q" may mean either, and is refused.
+    """
+    before: Use | None = None
+    for clause, use in zip(clauses, uses, strict=True):
+        is_joined = use.condition and before and before.condition
+        if clause.either and (clause.role is Role.UNLESS or not is_joined):
+            return False
+        before = use
+    return True
+
+
+def _is_alone(uses: Iterable[Use], response: Response) -> bool:
+    """Whether "if and only if" is the only condition, and no other timing is there."""
+    others = [use for use in uses if use.effect is not Effect.IFF]
+    return response.condition is None and not any(use.condition or use.timing for use in others)
 
 
 def _conditions(
@@ -208,7 +240,9 @@ def _conditions(
     if len(scopes) > 1:
         extra = [use for use in scopes if use.scope is s.ScopeKind.IN][1:]
         kept = [use for use in scopes if use not in extra]
-    parts = [(use.part, use.condition, clause.is_or) for clause, use in uses if use.condition]
+    parts = [
+        (use.part, use.condition, bool(clause.either)) for clause, use in uses if use.condition
+    ]
     parts += [(use.part, HOLDING, False) for use in extra]
     if response.condition is not None:
         kinds = {kind for _, kind, _ in parts}

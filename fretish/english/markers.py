@@ -72,7 +72,7 @@ _TIMES = (
     (Role.AT_MOST, "for at most; for no more than; for no longer than"),
     (Role.MORE_THAN, "for more than; for longer than; for durations exceeding; "
      "for a time of more than"),
-    (Role.FOR, "for at least; for a period of; for a duration of; for the next; for"),
+    (Role.FOR, "for at least; for a period of; for a duration of; for the next; for; until"),
     (Role.WITHIN, "within at most; within the next; within a maximum of; within; in less than; "
      "in at most; no later than; not later than; at most; at the latest; in under; in"),
     (Role.EVERY, "at least once every; at least every; once every; every"),
@@ -82,7 +82,7 @@ _TIME_MARKERS = sorted(
     ((tuple(wording.split()), role) for role, some in _TIMES for wording in some.split(";")),
     key=lambda each: -len(each[0]),
 )
-_SINCE = ("of", "after", "from", "since", "when", "once", "upon", "following")
+_SINCE = ("of", "after", "from", "since", "following")
 _MODES = frozenset({"mode", "state", "phase"})
 
 
@@ -94,8 +94,8 @@ class Clause:
     marker: Phrase
     words: Phrase = ()
     time: Time | None = None
-    is_or: bool = False
-    """Whether "or" joins it to the clause before."""
+    either: Phrase = ()
+    """The word "or" that joins it to the clause before; empty: it is joined by "and"."""
     is_since: bool = False
     """Whether `words` are the event from which `time` counts."""
 
@@ -115,18 +115,24 @@ def time_clause(words: Phrase, index: int) -> tuple[Clause, int] | None:
         if said[: len(wording)] != wording:
             continue
         time = time_at(words, index + len(wording))
-        if time is not None:
-            end = time.end - index
-            if (
-                role is Role.AFTER_TIME
-                and wording[-1] != "after"
-                and said[end : end + 1] != ("after",)
-            ):
-                continue
-            said_by = words[index : index + len(wording)]
-            since = 1 if said[end : end + 1] and said[end] in _SINCE else 0
-            if since:
-                clause = Clause(role, (*said_by, words[index + end]), (), time, is_since=True)
-                return clause, end + since
-            return Clause(role, said_by, (), time), end
+        if time is None:
+            continue
+        end = time.end - index
+        follows = said[end] if end < len(said) else ""
+        if _needs(wording, role) and follows not in _needs(wording, role):
+            continue
+        said_by = words[index : index + len(wording)]
+        if follows in _SINCE:
+            clause = Clause(role, (*said_by, words[index + end]), (), time, is_since=True)
+            return clause, end + 1
+        return Clause(role, said_by, (), time), end
     return None
+
+
+def _needs(wording: tuple[str, ...], role: Role) -> tuple[str, ...]:
+    """The words of which one must follow the duration; empty: none needs to."""
+    if wording == ("until",):
+        return _SINCE
+    if role is Role.AFTER_TIME and wording[-1] != "after":
+        return ("after",)
+    return ()

@@ -12,7 +12,7 @@ from fretish.classes.frozen import dataclass
 from fretish.diagnostics.source import Source
 from fretish.english.amounts import Time
 from fretish.english.clauses import divided, outlines
-from fretish.english.frames import HOLDING, TRIGGER, Frame, frames, uses
+from fretish.english.frames import HOLDING, TRIGGER, Effect, Frame, frames, uses
 from fretish.english.responses import Adverb, Response, responses
 from fretish.english.vocabulary import Vocabulary, lacking
 from fretish.english.words import (
@@ -32,7 +32,7 @@ MOST = 24
 MOST_WORDS = 200
 """A longer sentence has no reading."""
 _MOST_TRIED = 256
-"""The largest number of combinations of clauses that are tried."""
+"""The largest number of combinations of clauses that are tried, and of readings that they make."""
 _IMMEDIATELY, _NEXT, _ALWAYS = s.Immediately(), s.Next(), s.Always()
 _EVENTUALLY, _NEVER = s.Eventually(), s.Never()
 
@@ -81,10 +81,11 @@ def readings(text: str, names: Vocabulary) -> tuple[Reading, ...]:
     if len(phrase) > MOST_WORDS or not any(carries_meaning(word) for word in phrase):
         return ()
     distinct: dict[str, Reading] = {}
-    for reading in _all(phrase, names):
-        tree = parse(Source("<text>", reading.text).span())
+    for reading in islice(_all(phrase, names), _MOST_TRIED):
+        fretish = reading.text
+        tree = None if fretish in distinct else parse(Source("<text>", fretish).span())
         if isinstance(tree, s.Sentence):
-            distinct.setdefault(reading.text, replace(reading, sentence=tree))
+            distinct[fretish] = replace(reading, sentence=tree)
     least = min((len(each.left_out) for each in distinct.values()), default=0)
     return tuple(each for each in distinct.values() if len(each.left_out) == least)[:MOST]
 
@@ -143,15 +144,16 @@ def _demands(response: Response, frame: Frame) -> Iterator[_Demand]:
     """Condition, timing and response: several if the text leaves the timing open."""
     part = response.part
     condition = frame.condition
-    if "lasting" in frame.demands:
-        assert isinstance(frame.timing, s.Within)
+    if frame.effect is Effect.LASTING:
+        assert isinstance(frame.timing, s.For)
         yield from _lasting(response, frame, frame.timing.duration)
         return
-    if "iff" in frame.demands and condition is not None:
+    if frame.effect is Effect.IFF and condition is not None:
         said = part.negated().expression if response.negated else part.expression
-        yield None, _ALWAYS, e.Iff(condition.expression, said), _NOWHERE
+        always = [some for adverb, some in response.adverbs if adverb is Adverb.ALWAYS]
+        yield None, _ALWAYS, e.Iff(condition.expression, said), _NOWHERE.union(*always)
         return
-    only = "only" in frame.demands
+    only = frame.effect is Effect.ONLY
     negated = response.negated != only
     expression = part.negated().expression if negated else part.expression
     for adverb, places in response.adverbs or ((None, _NOWHERE),):
@@ -163,10 +165,11 @@ def _demands(response: Response, frame: Frame) -> Iterator[_Demand]:
                 continue
             if only and condition and timing == _NEXT:
                 continue
-            if timing == _NEVER:
+            if frame.premise is not None:
+                if timing != _NEVER:
+                    yield own, timing, e.Implies(frame.premise, expression), places
+            elif timing == _NEVER:
                 yield own, _NEVER, part.expression, places
-            elif frame.premise is not None:
-                yield own, timing, e.Implies(frame.premise, expression), places
             else:
                 yield own, timing, expression, places
 

@@ -9,8 +9,8 @@ from fretish.classes.frozen import dataclass
 from fretish.english.clauses import Outline
 from fretish.english.parts import Part
 from fretish.english.phrases import propositions
-from fretish.english.vocabulary import Vocabulary, content, matched, new_name
-from fretish.english.words import COPULAS, Phrase, Places, Word, lower, places, stem, text
+from fretish.english.vocabulary import Vocabulary, content, matched, new_name, valued
+from fretish.english.words import COPULAS, Phrase, Places, Word, lower, places, stem, stems, text
 
 
 class Adverb(Enum):
@@ -79,6 +79,8 @@ def responses(parts: Outline, names: Vocabulary) -> tuple[Response, ...]:
     predicate, negated, signs = _without_not(predicate)
     used = signs | places(none) | places(parts.modal)
     adverbs = (*more, *adverbs)
+    if not predicate:
+        return ()
     component, of_component = _component(subject, names)
     negated = negated != bool(none)
     if any(word.lower == "never" and word.start in signs for word in parts.predicate):
@@ -140,13 +142,23 @@ def _claim(subject: Phrase, predicate: Phrase, names: Vocabulary) -> tuple[bool,
             rest = predicate[len(holds) :]
             return True, rest if rest and len(holds) == 3 else subject, "holds"
     if said[:1] and said[0] in _STATES and content(subject):
+        if _says_enough(subject, predicate, names):
+            return True, predicate, "ensured"
         return True, (*subject, *predicate), ""
     whole = (*subject, *predicate)
     known = matched(whole, names, names.propositions)
     alone = matched(predicate, names, names.propositions)
     if content(subject) and known and not alone:
         return False, whole, "named"
-    return False, predicate or subject, ""
+    return False, predicate, ""
+
+
+def _says_enough(subject: Phrase, predicate: Phrase, names: Vocabulary) -> bool:
+    """Whether a name of the project is about the predicate alone: the subject is a component."""
+    match, value = matched(predicate, names, names.propositions), valued(predicate, names)
+    known = match.name if match is not None else value[0] if value is not None else ""
+    about = {part for word in content(subject) for part in stems(word.text)}
+    return bool(known) and about.isdisjoint(stems(known))
 
 
 def _without_no(subject: Phrase) -> tuple[Phrase, Phrase]:

@@ -57,12 +57,13 @@ def vocabulary(declarations: Declarations | None, components: Iterable[str] = ()
     own = tuple(dict.fromkeys(components))
     if declarations is None:
         return Vocabulary(components=own)
-    signals = declarations.signals
+    signals = declarations.measured
+    values = {name: each.values for name, each in declarations.signals.items() if each.values}
     variables = [name for name in declarations.variables if name not in declarations.propositions]
     return Vocabulary(
         (*declarations.propositions, *variables),
-        tuple(name for name, signal in signals.items() if not signal.values),
-        {name: signal.values for name, signal in signals.items() if signal.values},
+        tuple(name for name in signals if name not in values),
+        values,
         own,
     )
 
@@ -133,19 +134,30 @@ def valued(words: Sequence[Word], names: Vocabulary) -> tuple[str, str] | None:
 def content(words: Sequence[Word]) -> tuple[Word, ...]:
     """The words that make a name: no articles, copulas and punctuation."""
     skipped = ARTICLES | COPULAS | {"of"}
-    some = tuple(w for w in words if carries_meaning(w) and w.lower not in skipped)
+    some = tuple(
+        word
+        for index, word in enumerate(words)
+        if (carries_meaning(word) and word.lower not in skipped) or _is_letter(words, index)
+    )
     return some or tuple(w for w in words if w.text.isalnum())
 
 
+def _is_letter(words: Sequence[Word], index: int) -> bool:
+    """Whether "a" is a name, as in "a is on", and no article."""
+    follows = words[index + 1].lower if index + 1 < len(words) else "is"
+    return words[index].lower == "a" and follows in COPULAS
+
+
 def new_name(words: Sequence[Word]) -> str:
-    """A name made of all content words: `battery_low`; never a reserved word."""
+    """A name made of all content words: `battery_low`; never a reserved word.
+
+    It is quoted in a sentence if it has letters that FRETish does not.
+    """
     parts = (
         "".join(c if c.isalnum() or c == "_" else "_" for c in _small(word.text))
         for word in content(words)
     )
     name = "_".join(filter(None, (part.strip("_") for part in parts))) or "it"
-    if not name.isascii():
-        name = "".join(c if c.isascii() else "_" for c in name).strip("_") or "it"
     if not name[0].isalpha():
         name = f"n_{name}"
     return f"is_{name}" if name.lower() in RESERVED else name

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from fretish.classes.frozen import dataclass
 
 _WORD = re.compile(
-    r"-?\d+(?:\.\d+)?(?![\w.]*[A-Za-z_])|[A-Za-z_][\w%^/]*(?:'[a-z]+)?|\d+\w+|<=|>=|!=|[<>=]"
+    r"-?\d+(?:\.\d+)?(?![\w.]*[A-Za-z_])|[^\W\d][\w%^/]*(?:'[a-z]+)?|\d+\w+|<=|>=|!=|[<>=]"
     r"|[%°]|[,;:().]|\S"
 )
 _HYPHEN = re.compile(r"(?<=[A-Za-z])-(?=[A-Za-z])")
@@ -17,7 +17,7 @@ _NO_SPACE = re.compile(r"(?<=[A-Z]{3})(?=(?:when|if|while|until)\b)")
 """Where a blank is missing: `STANDBYwhen`."""
 _END = re.compile(r"[.;!?]+(?=\s|$)")
 _DIGIT = re.compile(r"-?\d+(?:\.\d+)?")
-_PARTS = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
+_PARTS = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+|[^\W\d_A-Za-z]+")
 PUNCTUATION = frozenset(",;:().'\"`!?")
 ARTICLES = frozenset("the a an this these those its their".split())
 COPULAS = frozenset(

@@ -50,6 +50,7 @@ def test_seconds_without_a_clock_are_reported_once(fretc: Fretc) -> None:
     assert err.count("F312") == 1
 
 
+@pytest.mark.slow
 def test_the_bindings_give_names_and_ticks(fretc: Fretc) -> None:
     write(
         "requirements/bindings.toml",
@@ -62,6 +63,7 @@ def test_the_bindings_give_names_and_ticks(fretc: Fretc) -> None:
     assert "50 ticks (5 s)" in out
 
 
+@pytest.mark.slow
 def test_answers_choose_a_reading_and_become_tests(
     fretc: Fretc, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -81,6 +83,7 @@ def test_answers_choose_a_reading_and_become_tests(
     assert "1 requirement: 1 test" in checked.out
 
 
+@pytest.mark.slow
 def test_wrong_answers_in_the_file_are_refused_by_fretc_test(
     fretc: Fretc, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -93,6 +96,7 @@ def test_wrong_answers_in_the_file_are_refused_by_fretc_test(
     assert "F503" in checked.err
 
 
+@pytest.mark.slow
 def test_answers_of_several_requirements_share_a_file(
     fretc: Fretc, monkeypatch: pytest.MonkeyPatch
 ) -> None:

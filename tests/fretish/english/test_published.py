@@ -30,6 +30,7 @@ def same(left: str, right: str, *, exact: bool = False) -> bool:
     return is_same(one, other, exact=exact)
 
 
+@pytest.mark.slow
 def test_the_criterion_compares_meanings_up_to_names() -> None:
     always = "the sw shall always satisfy (a & x > 5) => b"
     assert same(always, "whenever x > 5 & a the sw shall immediately satisfy b", exact=True)
