@@ -44,6 +44,7 @@ _HELP = f"""From FRETish requirements to runtime monitors, audited logs and a tr
 _GROUPS = {
     "Write requirements": {
         "check": ("check:check", "Report errors and warnings of a project, before any run."),
+        "write": ("write:write", "Write FRETish from plain English, and choose by short runs."),
         "explain": ("explain:explain", "Explain a requirement with traces, or a message code."),
         "init": ("init:init", "Create a project: requirement, bindings and hazards."),
         "bind": ("bind:bind", "Draft bindings from a log, or check bindings against logs."),

@@ -32,6 +32,7 @@ LINES: tuple[tuple[str, ...], ...] = (
     ("init", "made"),
     ("fmt", RULE),
     ("import", "fret.json"),
+    ("write", "when a the robot must stop", "-o", "build/w.fret", "--choose", "1"),
     ("explain", "R1"),
     ("info", LOG),
     ("bind", "--from", LOG),

@@ -205,7 +205,7 @@ def _glossary(declarations: Declarations | None) -> Mapping[str, Variable]:
     }
     bound |= {
         name: Variable(name, role=str(signal.role))
-        for name, signal in declarations.signals.items()
+        for name, signal in declarations.measured.items()
         if signal.role is not None and name not in bound
     }
     named = {
@@ -237,7 +237,7 @@ def _remarks(sentence: Sentence, declarations: Declarations | None) -> Iterator[
 
 def _without_signals(sentence: Sentence, declarations: Declarations | None) -> Sentence:
     """The sentence without the comparisons that are evaluated directly over signals."""
-    signals = declarations.signals if declarations else {}
+    signals = declarations.measured if declarations else {}
 
     def answered(comparison: Comparison) -> Expression:
         return Truth(True) if is_measured(comparison, signals) else comparison

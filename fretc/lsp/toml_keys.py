@@ -30,12 +30,14 @@ _ROLES = tuple(map(str, Role))
 _AGGREGATES = tuple(map(str, Aggregate))
 FIELDS_OF_FILES: Mapping[str, Mapping[str, Sequence[str]]] = {
     BINDINGS: {
-        **{f"{name}.": () for name in ("signal", "proposition", "variable", "action")},
+        **{f"{name}.": () for name in ("signal", "proposition", "variable", "action", "call")},
         "clock": clock.FIELDS,
         "signal.": signals.FIELDS,
         "proposition.": propositions.FIELDS,
         "variable.": variables.FIELDS,
         "action.": actions.FIELDS,
+        "call.": actions.CALL_FIELDS,
+        "agent": actions.AGENT_FIELDS,
         "map": coordinates.FIELDS,
         "interceptor": interceptor.FIELDS,
         "assume": interceptor.ASSUMED_FIELDS,

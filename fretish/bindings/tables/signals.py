@@ -27,7 +27,7 @@ from fretish.diagnostics.messages import diagnostic
 from fretish.reading.toml_text import Tables
 
 FIELDS = (
-    "path", "type", "reduce", "unit", "valid", "invalid", "max_age", "footprint", "sensor",
+    "path", "value", "type", "reduce", "unit", "valid", "invalid", "max_age", "footprint", "sensor",
     "values", "role", "agg",
 )  # fmt: skip
 _OF_NUMBERS = ("unit", "valid", "invalid", "reduce", "footprint", "sensor")
@@ -129,6 +129,8 @@ class SignalTables(Fields):
             return None
         if binding.ticks_back(valid):
             self._say(diagnostic("pre_in_valid", self.tables.value(*at)))
+            return None
+        if self._calls_function_of_values(valid, self.tables.value(*at)):
             return None
         if any(isinstance(part, e.Word) for part in e.parts(valid)):
             self._say(diagnostic("word_in_valid", self.tables.value(*at)))
