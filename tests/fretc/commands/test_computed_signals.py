@@ -177,6 +177,8 @@ def test_an_analysis_knows_that_a_computed_signal_depends_on_others(
     assert good.status == 0
     order = analyzed(fretc, project, bindings, f"{always} square > 7", f"{always} square < 5")
     assert order.status == 1
+    theirs = bindings.replace('unit = "m"\nrole = "output"', 'unit = "m"\nrole = "input"')
+    assert analyzed(fretc, project, theirs, f"{always} ahead > 100").status == 1
     unknown = analyzed(fretc, project, bindings, f"{always} square > 7", f"{always} x < 5")
     assert unknown.status == 3
     assert "read the same numbers, and are treated as independent" in unknown.out
