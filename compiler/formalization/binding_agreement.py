@@ -174,6 +174,7 @@ def _drifted(
         requirement=requirement.id,
         text=bound.span.text,
         where=where,
+        related=(bound.span,),
     )
 
 
@@ -189,6 +190,8 @@ def unbound_propositions(
     proposed: the nearest name may be another safety claim.
     """
     for name in requirement.watched:
+        if name in declarations.propositions and not declarations.mistakes:
+            continue
         mistakes = _mistakes(name, requirement.stated.get(name), declarations)
         yield from mistakes
         if mistakes or name in declarations.propositions:
@@ -207,7 +210,7 @@ def broken_tables(
     requirement: FormalizedRequirement, declarations: Declarations
 ) -> Iterator[Diagnostic]:
     """The errors in the tables of propositions and signals that a requirement reads."""
-    for name in requirement.watched:
+    for name in requirement.watched if declarations.mistakes else ():
         yield from _mistakes(name, requirement.stated.get(name), declarations)
 
 

@@ -32,6 +32,7 @@ from fretish.documents import RequirementEntry
 from fretish.expressions import Comparison, Expression, Truth, with_comparisons
 from fretish.parser import find_errors, parse
 from fretish.reading.limits import with_budget
+from fretish.reading.memory import remembered
 from fretish.reading.recursion import with_recursion_limit
 from fretish.syntax import Sentence, with_expressions
 
@@ -183,6 +184,7 @@ def _rule(
     )
 
 
+@remembered
 def _glossary(declarations: Declarations | None) -> Mapping[str, Variable]:
     """The declaration of each variable; a bound proposition has its binding's role and text.
 
@@ -263,6 +265,7 @@ def duplicate_ids(
                 requirement=requirement.id,
                 source=span.source.name,
                 line=span.line,
+                related=(span,),
             )
             diagnostics.setdefault(earlier, diagnostics[requirement])
     return diagnostics

@@ -15,6 +15,7 @@ from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.arena.variables import UnsupportedError
 from fretc.analysis.components import by_outputs, by_variables
+from fretc.analysis.conflicts import Completeness, conflicts
 from fretc.analysis.controllers.circuit import Circuit
 from fretc.analysis.controllers.files import ControllerFormat
 from fretc.analysis.controllers.moves import Mealy
@@ -35,7 +36,7 @@ from fretc.analysis.games import job as of_games
 from fretc.analysis.implications import Consistency, ConstantRequirement, Removable
 from fretc.analysis.realizability_problem import RealizabilityProblem, stage
 from fretc.analysis.repairs import repairs
-from fretc.analysis.verdicts import Completeness, component, conflicts, strategy, verdict
+from fretc.analysis.verdicts import component, strategy, verdict
 from fretish.bindings.declarations import Role
 from fretish.checking import NUMBERS_BACK, calls, conditions
 from fretish.classes.frozen import dataclass

@@ -203,10 +203,9 @@ class RealizabilityProblem:
             return tuple(ticks)
         return tuple(shown(tick | more) for tick, more in zip(ticks, numbers, strict=True))
 
-    @property
-    def certain(self) -> tuple[RequirementCounter, ...]:
-        """Counters of requirements for which the environment has only possible valuations."""
-        uncertain = self.arena.alphabet.uncertain_atoms(Role.INPUT)
+    def certain(self, role: Role) -> tuple[RequirementCounter, ...]:
+        """Counters of requirements for which a player has only possible valuations."""
+        uncertain = self.arena.alphabet.uncertain_atoms(role)
         if any(not uncertain.isdisjoint(_atoms(requirement)) for requirement in self.assumptions):
             return ()
         return self.counters(

@@ -22,7 +22,7 @@ from fretc.audit.measurements.states import states
 from fretc.audit.measurements.tallies import tally
 from fretc.audit.measurements.trials import Count, Trials
 from fretc.audit.measurements.unknown_inputs import unknown_inputs, without_brackets
-from fretc.audit.measurements.violations import DemandText, violations
+from fretc.audit.measurements.violations import BoundBeliefs, DemandText, violations
 from fretc.audit.phases.by_shift import Phases, phases
 from fretc.logs import log_diagnostics
 from fretc.logs.sample_fingerprint import fingerprint
@@ -62,6 +62,8 @@ class MonitoredRequirement:
     """The situations to look for in runs; empty: they are not measured."""
     is_assumption: bool = False
     """Whether it demands something of the environment."""
+    beliefs: Mapping[str, str] = field(default_factory=dict)
+    """Proposition → the belief of an agent, where the names differ."""
 
     @property
     def propositions(self) -> tuple[str, ...]:
@@ -243,6 +245,7 @@ def _evidence(
             at,
             shown,
             signals,
+            BoundBeliefs(columns, requirement.beliefs),
         ),
         open=tuple(at(t) for t, _ in outcome.open),
         latencies=tuple(round(k.seconds - t.seconds, 9) for t, k in answers),
@@ -347,7 +350,7 @@ def _reason(evidence: RunResult, recording: Recording, declarations: Declaration
         case kernel.VIOLATED:
             return _broken(evidence)
         case kernel.NO_DATA:
-            return _unknown(evidence, recording)
+            return _unknown(evidence, recording, declarations)
         case kernel.INCONCLUSIVE if evidence.outcome.verdict in WITHOUT_VIOLATION:
             return "what came after the last whole tick leaves it open"
         case kernel.INCONCLUSIVE:
@@ -376,8 +379,13 @@ def _more(count: int) -> str:
     return f", and at {_times(count - 1, 'other time')}" if count > 1 else ""
 
 
-def _unknown(evidence: RunResult, recording: Recording) -> str:
-    errors = [finding.message for finding in recording.findings if finding.is_error]
+def _unknown(evidence: RunResult, recording: Recording, declarations: Declarations) -> str:
+    of_others = {s.span for s in declarations.signals.values() if s.name not in evidence.units}
+    errors = [
+        finding.message
+        for finding in recording.findings
+        if finding.is_error and (finding.span is None or finding.span not in of_others)
+    ]
     if errors:
         return errors[0]
     if not recording.intact:

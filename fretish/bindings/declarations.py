@@ -368,12 +368,27 @@ class ActionBinding:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
+@dataclass(frozen=True, slots=True)
+class ServiceCall:
+    """`[call.NAME]`: which service an action of an agent calls."""
+
+    action: str
+    service: str
+    type: str
+    """Such as `std_srvs/Trigger`."""
+    request: str
+    """In JSON."""
+    limit: int
+    """Nanoseconds for the answer."""
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
 Part = tuple[str, str]
 """`("signal", "vx")`, `("proposition", "near")`, `("clock", "")`, `("map", "")`."""
-SHARED = ("interceptor", "assume", "environment", "map", "run", "action")
+SHARED = ("interceptor", "assume", "environment", "map", "run", "action", "call", "agent")
 """Tables that belong to no single requirement: `[interceptor]`, `[assume]`,
-`[[assume.requirement]]`, `[map]`, `[run.label]` and `[action.NAME]`. Only some commands read
-them."""
+`[[assume.requirement]]`, `[map]`, `[run.label]`, `[action.NAME]`, `[call.NAME]` and `[agent]`. Only
+some commands read them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -411,6 +426,11 @@ class Declarations:
     verdict on a log depends on them."""
     actions: Mapping[str, ActionBinding] = field(default_factory=dict)
     """`[action.NAME]`: name of an agent's action → what it publishes."""
+    calls: Mapping[str, ServiceCall] = field(default_factory=dict)
+    """`[call.NAME]`: name of an agent's action → the service that it calls."""
+    agent_trace: str | None = None
+    """`[agent]`: the topic on which agents report beliefs, goals and actions; no verdict depends on
+    it."""
     computed: Mapping[str, ComputedSignal] = field(default_factory=dict)
     """The computed signals; `signals` has the recorded ones."""
 

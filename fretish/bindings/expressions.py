@@ -58,6 +58,11 @@ class _ExpressionError(DiagnosticError):
     """Carries a diagnostic out of the callbacks of the parser."""
 
 
+def words(text: str) -> tuple[Token, ...]:
+    """The words of an expression, right or wrong; what is no word is left out."""
+    return tuple(_parser().known_tokens(text))
+
+
 @cache
 def _parser() -> Parser:
     return GRAMMAR.parser()

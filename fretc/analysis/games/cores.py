@@ -18,7 +18,10 @@ Members = frozenset[int]
 
 
 def cores(
-    size: int, is_conflict: Callable[[Members], bool], near: Callable[[int, int], bool]
+    size: int,
+    is_conflict: Callable[[Members], bool],
+    near: Callable[[int, int], bool],
+    smaller: Callable[[Members], Members] = lambda members: members,
 ) -> Iterator[Members]:
     """Each minimal set with a conflict, as soon as it is found.
 
@@ -26,6 +29,7 @@ def cores(
         size: the members are 0..size-1.
         is_conflict: monotone: every superset of a conflict is one.
         near: whether two members may conflict by themselves; these are tried first.
+        smaller: a conflict within a conflict, if one is known.
     """
     open_sets = bdd.true()
     for found in _small(size, is_conflict, near):
@@ -34,7 +38,7 @@ def cores(
     while open_sets != bdd.false():
         seed = _largest(open_sets, size)
         if is_conflict(seed):
-            core = _shrunk(seed, size, open_sets, is_conflict)
+            core = _shrunk(smaller(seed), size, open_sets, is_conflict)
             yield core
             open_sets = open_sets - bdd.point(dict.fromkeys(core, True))
         else:

@@ -19,7 +19,7 @@ from fretish.bindings.declarations import Aggregate, ComputedSignal, MeasuredSig
 from fretish.bindings.definitions import cycle_from
 from fretish.bindings.functions import ROUNDED
 from fretish.bindings.tables.fields import Fields, Notes
-from fretish.bindings.tables.signals import SIGNAL_FIELDS
+from fretish.bindings.tables.signals import FIELDS as SIGNAL_FIELDS
 from fretish.bindings.words import resolve_number
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic

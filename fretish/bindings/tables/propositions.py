@@ -24,8 +24,8 @@ from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.reading.toml_text import Tables
 
-_PROPOSITION = ("text", "expr", "role", "agg", "on_unknown", "kind", "modality", "action")
-_KINDS = ("belief", "command", "physical")
+FIELDS = ("text", "expr", "role", "agg", "on_unknown", "kind", "modality", "action")
+KINDS = ("belief", "command", "physical")
 
 
 class PropositionTables(Fields):
@@ -46,7 +46,7 @@ class PropositionTables(Fields):
     def proposition(self, name: str, table: Mapping[str, Any]) -> Proposition | None:
         """The proposition; None if it has errors that make it unusable."""
         at = ("proposition", name)
-        self._check_keys(table, _PROPOSITION, f"[proposition.{name}]", *at)
+        self._check_keys(table, FIELDS, f"[proposition.{name}]", *at)
         if "expr" not in table:
             self._say(diagnostic("expression_missing", self.tables.place(*at), name=name))
         written = self._expression(table, (*at, "expr"))
@@ -123,13 +123,13 @@ class PropositionTables(Fields):
 
     def _kind(self, table: Mapping[str, Any], at: tuple[str, ...]) -> str:
         kind = table.get("kind", "")
-        if kind not in (*_KINDS, ""):
+        if kind not in (*KINDS, ""):
             self._say(
                 diagnostic(
                     "unknown_kind",
                     self.tables.value(*at, "kind"),
                     kind=kind,
-                    kinds=", ".join(_KINDS),
+                    kinds=", ".join(KINDS),
                 )
             )
         return str(kind)

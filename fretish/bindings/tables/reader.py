@@ -28,8 +28,8 @@ from fretish.diagnostics.source import Source
 from fretish.reading.limits import with_budget
 from fretish.reading.toml_text import Tables, read
 
-_TABLES = ("clock", "signal", "proposition", "variable", "interceptor", "assume", "map", "run",
-           "action", "fret")  # fmt: skip
+FIELDS = ("clock", "signal", "proposition", "variable", "interceptor", "assume", "map", "run",
+           "action", "call", "agent", "fret")  # fmt: skip
 S = TypeVar("S")
 T = TypeVar("T", Signal, ComputedSignal, Proposition)
 
@@ -72,7 +72,7 @@ class _TablesReader(Fields):
 
     def declarations(self) -> Declarations:
         tables, notes = self.tables, self.notes
-        self._check_keys(tables.data, _TABLES, "the bindings")
+        self._check_keys(tables.data, FIELDS, "the bindings")
         written = self._tables("signal")
         of_signals = SignalTables(tables, notes)
         recorded = {name: table for name, table in written.items() if "value" not in table}
@@ -103,6 +103,8 @@ class _TablesReader(Fields):
             VariableTables(tables, notes).kept(),
             self._shared("environment", loop.sentences),
             self._shared("action", ActionTables(tables, notes).actions),
+            self._shared("call", ActionTables(tables, notes).calls),
+            self._shared("agent", ActionTables(tables, notes).trace),
             computed,
         )
 

@@ -26,7 +26,7 @@ from fretish.bindings.tables.vocabulary import ValuesField
 from fretish.diagnostics.messages import diagnostic
 from fretish.reading.toml_text import Tables
 
-SIGNAL_FIELDS = (
+FIELDS = (
     "path", "value", "type", "reduce", "unit", "valid", "invalid", "max_age", "footprint", "sensor",
     "values", "role", "agg",
 )  # fmt: skip
@@ -52,7 +52,7 @@ class SignalTables(Fields):
     def signal(self, name: str, table: Mapping[str, Any]) -> Signal | None:
         """The signal; None if it has errors that make it unusable."""
         at = ("signal", name)
-        self._check_keys(table, SIGNAL_FIELDS, f"[signal.{name}]", *at)
+        self._check_keys(table, FIELDS, f"[signal.{name}]", *at)
         where = self._path(table, (*at, "path"))
         if "values" in table:
             return self._enumerated(name, table, where)

@@ -12,9 +12,10 @@ from compiler.formalization.formalized import FormalizedRequirement
 from fretc.analysis import verdicts
 from fretc.analysis.analysis import analyze
 from fretc.analysis.arena.budget import Budget
+from fretc.analysis.conflicts import Completeness
+from fretc.analysis.conflicts import conflicts as conflicts_of
 from fretc.analysis.findings import Conflict, OpenQuestion, RealizabilityVerdict
 from fretc.analysis.games.squaring import IterativeSquaring
-from fretc.analysis.verdicts import Completeness
 from fretish.bindings.declarations import Role
 from tests.each import each
 from tests.effort import FULL
@@ -199,7 +200,7 @@ def test_a_million_ticks_are_answered_as_ten_are(ticks: int) -> None:
         setting = staged(soon, f"the sw shall for {held} ticks satisfy !x")
         found, _ = verdicts.verdict(setting, Budget(60))
         assert found.verdict is verdict
-    conflict, complete = verdicts.conflicts(setting, Budget(60))
+    conflict, complete = conflicts_of(setting, Budget(60))
     assert isinstance(conflict, Conflict)
     assert isinstance(complete, Completeness)
     assert conflict.because == (
@@ -349,7 +350,7 @@ def test_what_takes_too_long_comes_with_a_clue(monkeypatch: pytest.MonkeyPatch) 
         "whenever b the sw shall for 1000001 ticks satisfy !x",
         "whenever b the sw shall immediately satisfy x | y",
     )
-    (found,) = verdicts.conflicts(setting, Budget(0.3))
+    (found,) = conflicts_of(setting, Budget(0.3))
     assert isinstance(found, OpenQuestion)
     assert found.why == (
         "not answered within 0.3 CPU seconds; "

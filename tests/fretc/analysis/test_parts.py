@@ -9,9 +9,10 @@ import z3
 
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arithmetic import cells, groups
+from fretc.analysis.conflicts import conflicts
 from fretc.analysis.findings import Conflict, RealizabilityVerdict
 from fretc.analysis.realizability_problem import stage
-from fretc.analysis.verdicts import conflicts, verdict
+from fretc.analysis.verdicts import verdict
 from tests.effort import FULL
 from tests.requirement_sets import requirements, roles
 

@@ -75,7 +75,7 @@ PROPOSITIONS: Mapping[str, tuple[Mapping[str, Any], Fields]] = {
         {
             "text": ("something is near: < 1 m",),
             "role": ROLES,
-            "kind": propositions._KINDS,
+            "kind": propositions.KINDS,
             "agg": ("any", "all", "last"),
             "on_unknown": (True, False, "unknown"),
             "modality": ("B", "G"),
@@ -188,18 +188,15 @@ PLAIN: Mapping[str, Any] = {
 @pytest.mark.parametrize(
     ("known", "drawn"),
     [
-        (clock._CLOCK, {"tick", *CLOCK}),
+        (clock.FIELDS, {"tick", *CLOCK}),
+        (signals.FIELDS, {name for each in SIGNALS.values() for part in each for name in part}),
         (
-            signals.SIGNAL_FIELDS,
-            {name for each in SIGNALS.values() for part in each for name in part},
-        ),
-        (
-            propositions._PROPOSITION,
+            propositions.FIELDS,
             {name for each in PROPOSITIONS.values() for part in each for name in part},
         ),
-        (variables._VARIABLE, {n for each in VARIABLES.values() for part in each for n in part}),
+        (variables.FIELDS, {n for each in VARIABLES.values() for part in each for n in part}),
         (labels._RUN, {*LABELS}),
-        (coordinates._MAP, {*MAP}),
+        (coordinates.FIELDS, {*MAP}),
         (documents.FIELDS, {"id", *HEADER}),
     ],
 )
