@@ -57,7 +57,7 @@ def vocabulary(declarations: Declarations | None, components: Iterable[str] = ()
     own = tuple(dict.fromkeys(components))
     if declarations is None:
         return Vocabulary(components=own)
-    signals = declarations.signals
+    signals = declarations.measured
     variables = [name for name in declarations.variables if name not in declarations.propositions]
     return Vocabulary(
         (*declarations.propositions, *variables),
