@@ -45,7 +45,7 @@ def test_the_scenarios_are_named(fretc: Fretc) -> None:
     ran = fretc("simulate", "--list")
     assert ran.status == 0
     assert re.search(r"^nominal +Nominal mission$", ran.out, re.MULTILINE)
-    assert len(ran.out.splitlines()) == 19
+    assert len(ran.out.splitlines()) == 31
 
 
 @pytest.mark.slow
