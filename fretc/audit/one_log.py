@@ -221,7 +221,7 @@ def _evidence(
     computed = computed_samples(
         _computed(declarations, requirement.propositions), declarations, recording
     )
-    shown = replace(recording, samples={**recording.samples, **computed}) if computed else recording
+    every = replace(recording, samples={**recording.samples, **computed}) if computed else recording
     signals = (*signals, *computed)
     pairs = outcome.answers[:]  # the tuple is made, which `states` reads again
     answers = tuple((at(t), at(k)) for t, k in pairs)
@@ -243,7 +243,7 @@ def _evidence(
             requirement.demand,
             monitor.REQUIREMENTS[0].deadline_ticks,
             at,
-            shown,
+            every,
             signals,
             BoundBeliefs(columns, requirement.beliefs),
         ),

@@ -142,7 +142,7 @@ def _descriptions(project: Project) -> Mapping[str, str]:
         return {}
     signals = {
         name: f"signal [{'words' if signal.values else signal.unit_name or '1'}]"
-        for name, signal in declared.signals.items()
+        for name, signal in declared.measured.items()
     }
     propositions = {
         name: f"{proposition.role or 'proposition'}: {proposition.text}".rstrip(": ")

@@ -12,6 +12,7 @@ from compiler.logic import printing
 from compiler.project.project import Project
 from fretc.lsp.names import NameKind, Occurrence
 from fretc.lsp.view import View
+from fretish.bindings.declarations import ComputedSignal
 from fretish.diagnostics import explanations
 from fretish.diagnostics.diagnostic import Code
 from fretish.diagnostics.source import Span
@@ -121,7 +122,7 @@ def _of_variable(project: Project, name: str) -> Iterator[str]:
     if declared is None:
         yield "not declared: the project has no bindings"
         return
-    proposition, signal = declared.propositions.get(name), declared.signals.get(name)
+    proposition, signal = declared.propositions.get(name), declared.measured.get(name)
     variable = declared.variables.get(name)
     if proposition is not None:
         role = f", {proposition.role}" if proposition.role else ""
@@ -129,7 +130,8 @@ def _of_variable(project: Project, name: str) -> Iterator[str]:
         yield from ["", _plain(proposition.text)] if proposition.text else ()
     if signal is not None:
         unit = f" in {_code(signal.unit_name)}" if signal.unit_name else ""
-        yield f"signal{unit}: {_code(str(signal.path))}"
+        source = signal.text if isinstance(signal, ComputedSignal) else str(signal.path)
+        yield f"signal{unit}: {_code(source)}"
         if signal.values:
             yield f"\nvalues: {', '.join(map(_code, signal.values))}"
     if variable is not None:

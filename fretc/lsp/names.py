@@ -218,7 +218,8 @@ def _of_table(
         yield from _texts(tables.value(*path, "component"), NameKind.COMPONENT)
     if isinstance(table.get("value"), str):
         place = _inner(tables.value(*path, "value"), table["value"])
-        yield from of_sentence(place) if place is not None else ()
+        names = _of_expression if path[0] == "signal" else of_sentence
+        yield from names(place) if place is not None else ()
     if isinstance(table.get("expr"), str):
         place = _inner(tables.value(*path, "expr"), table["expr"])
         yield from _of_expression(place) if place is not None else ()

@@ -58,7 +58,7 @@ def vocabulary(declarations: Declarations | None, components: Iterable[str] = ()
     if declarations is None:
         return Vocabulary(components=own)
     signals = declarations.measured
-    values = {name: each.values for name, each in declarations.signals.items() if each.values}
+    values = {name: each.values for name, each in signals.items() if each.values}
     variables = [name for name in declarations.variables if name not in declarations.propositions]
     return Vocabulary(
         (*declarations.propositions, *variables),

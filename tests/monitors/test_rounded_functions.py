@@ -126,6 +126,7 @@ def test_no_number_is_an_error(data: st.DataObject, name: str) -> None:
         assert math.isnan(value)
 
 
+@pytest.mark.slow
 @given(st.data(), st.sampled_from([*ROUNDED]))
 def test_an_audit_computes_the_same_to_the_last_bit(data: st.DataObject, name: str) -> None:
     names = [f"n{i}" for i in range(ROUNDED[name].least)]
@@ -154,6 +155,7 @@ def turning(x: float, y: float, z: float, w: float) -> NDArray[Any]:
 quaternions = st.tuples(*[st.floats(-2, 2)] * 4)
 
 
+@pytest.mark.slow
 @given(quaternions)
 def test_yaw_pitch_and_roll_are_the_turns_about_z_y_and_x(q: tuple[float, ...]) -> None:
     assume(sum(part * part for part in q) > 1e-3)
@@ -171,6 +173,7 @@ def test_yaw_pitch_and_roll_are_the_turns_about_z_y_and_x(q: tuple[float, ...]) 
     np.testing.assert_allclose(about_z @ about_y @ about_x, turning(*q), atol=1e-9)
 
 
+@pytest.mark.slow
 @given(quaternions, quaternions)
 def test_the_angle_between_two_rotations_is_that_of_their_quotient(
     p: tuple[float, ...], q: tuple[float, ...]

@@ -67,7 +67,16 @@ def _two_roles(
 
 
 def role(requirement: FormalizedRequirement, name: str) -> Role | None:
-    """The declared role of a variable, or the common role of a proposition's signals."""
+    """The declared role of a variable, or the common role of a proposition's signals.
+
+    Who chooses the signals of a computed one chooses it, too, whatever its own role.
+    """
+    declared = requirement.declarations
+    if declared is not None and name in declared.computed:
+        signals = {each.id for each in e.names(declared.computed[name].value)}
+        theirs = {own for each in signals if (own := declared.signals[each].role) in CHOSEN}
+        if len(theirs) == 1:
+            return theirs.pop()
     variable = requirement.glossary.get(name)
     if variable is not None and variable.role in CHOSEN:
         return Role(variable.role)

@@ -167,6 +167,7 @@ def test_an_analysis_knows_that_a_computed_signal_depends_on_others(
         x='path = "/x.data"\nunit = "m"',
         ahead='value = "x - 1 m"\nunit = "cm"',
         square='value = "sqrt(x * x)"',
+        size='value = "norm(x)"',
     )
     always = "the robot shall always satisfy"
     fight = analyzed(fretc, project, bindings, f"{always} ahead > 100", f"{always} x < 1")
@@ -176,6 +177,11 @@ def test_an_analysis_knows_that_a_computed_signal_depends_on_others(
     assert good.status == 0
     order = analyzed(fretc, project, bindings, f"{always} square > 7", f"{always} square < 5")
     assert order.status == 1
+    theirs = bindings.replace('unit = "m"\nrole = "output"', 'unit = "m"\nrole = "input"')
+    assert analyzed(fretc, project, theirs, f"{always} ahead > 100").status == 1
     unknown = analyzed(fretc, project, bindings, f"{always} square > 7", f"{always} x < 5")
     assert unknown.status == 3
     assert "read the same numbers, and are treated as independent" in unknown.out
+    equal = analyzed(fretc, project, bindings, f"{always} square > 7", f"{always} size < 5")
+    assert equal.status == 3
+    assert "read the same numbers, and are treated as independent" in equal.out

@@ -278,6 +278,20 @@ def test_a_renaming_changes_names_and_nothing_else(new: str, editor: Start) -> N
     )
 
 
+def test_a_computed_signal_is_shown_and_renamed_with_its_value(editor: Start) -> None:
+    client, path, bindings = opened(editor)
+    text = cases.BINDINGS + '\n[signal.pace]\nvalue = "hypot(vx, 1 m/s)"\n'
+    write("requirements/bindings.toml", text)
+    write("requirements/r2.fret", R2.replace("vx >", "pace >"))
+    client.tell("textDocument/didSave", textDocument=client.at(path, 0, 0)["textDocument"])
+    client.open(bindings)
+    assert "signal in `m/s`: `hypot(vx, 1 m/s)`" in hovered(client, bindings, text, "pace]")
+    texts = renamed(client, place(client, bindings, text, "vx]"), "v_x")
+    assert 'value = "hypot(v_x, 1 m/s)"' in texts["bindings.toml"]
+    assert 'expr = "abs(v_x) < 0.01 m/s for 200 ms"' in texts["bindings.toml"]
+    assert [each for each in loaded().diagnostics if each.is_error] == []
+
+
 def test_a_hazard_and_a_requirement_are_renamed_with_what_refers_to_them(editor: Start) -> None:
     client, path, _ = opened(editor)
     write("requirements/r2.fret", R2)
