@@ -2,12 +2,14 @@
 
 Each line is printed with OxiDD and with BuDDy; `--one` measures the engine of `FRETC_DIAGRAMS`.
 `--exports FILE...` analyzes FRET's exports as their users do, without an edit.
+`--tlsf FILE...` compares specifications in TLSF with the status that they state.
 """
 
 from __future__ import annotations
 
 import json
 import os
+import re
 import resource
 import statistics
 import subprocess
@@ -22,10 +24,17 @@ import spot
 
 from benchmarks.figures import RUNS, Figure
 from compiler.logic import printing
-from fretc.analysis.analysis import analyze
+from compiler.project.folder import load_folder
+from compiler.project.project import Project
+from compiler.project.tlsf.importing import read_specification
+from fretc.analysis.analysis import AnalysisOptions, analyze, assembled, jobs
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.roles import Roles
+from fretc.analysis.arena.roles import roles as signal_roles
+from fretc.analysis.assumptions import assumptions, guarantees
 from fretc.analysis.findings import RealizabilityVerdict
+from fretc.analysis.worker import finished
+from fretish.diagnostics.source import Source
 from tests.requirement_sets import ROLES, drawn, requirements, roles, staged
 
 ENGINES = ("OxiDD", "BuDDy")
@@ -186,6 +195,34 @@ def exports(files: Sequence[str]) -> None:
         )
 
 
+def specifications(files: Sequence[str]) -> None:
+    """Each file of TLSF that is imported: the verdict, the stated status, CPU seconds."""
+    counts: Counter[str] = Counter()
+    for file in files:
+        text = Path(file).read_text("utf-8", errors="replace")
+        result = read_specification(Source(file, text))
+        stated = re.search(r"STATUS *: *(\w+)", text)
+        if not result.artifacts or stated is None:
+            counts["refused"] += 1
+            continue
+        with tempfile.TemporaryDirectory() as folder:
+            for artifact in result.artifacts:
+                (Path(folder) / artifact.path).write_text(artifact.text)
+            project = load_folder(folder)
+        assert isinstance(project, Project)
+        named, _ = signal_roles(project.formalized)
+        given, _ = assumptions(project.formalized, None)
+        asked = AnalysisOptions(LIMIT, repairs=False)
+        work = jobs(guarantees(project.formalized), named, given, asked)
+        verdicts = [job for job in work if job.title.startswith("can ") and "together" in job.title]
+        answers, _ = finished(verdicts, lambda title: None)
+        found = assembled(guarantees(project.formalized), named, given, asked, answers)
+        seconds = sum(float(each.seconds or 0) for each in found.components)
+        counts[f"{stated[1]}, answered {found.verdict}"] += 1
+        print(f"{file}: {stated[1]}, {found.verdict}, {seconds:.2f} s", flush=True)
+    print("; ".join(f"{number} {what}" for what, number in sorted(counts.items())))
+
+
 def beside() -> None:
     """All of it with each engine of decision diagrams, line by line beside each other."""
     outputs = [
@@ -206,6 +243,8 @@ def beside() -> None:
 if __name__ == "__main__":
     if "--exports" in sys.argv:
         exports(sys.argv[sys.argv.index("--exports") + 1 :])
+    elif "--tlsf" in sys.argv:
+        specifications(sys.argv[sys.argv.index("--tlsf") + 1 :])
     elif "--one" in sys.argv:
         against_spot()
         hard()

@@ -313,20 +313,25 @@ def import_(
     project_column: str | None,
     force: bool,
 ) -> None:
-    """Import requirements that FRET has exported, as JSON or CSV.
+    """Import requirements that FRET has exported, as JSON or CSV, or a TLSF specification.
 
     The command writes a .fret file for each FRET project, and bindings.toml with FRET's
     variables. Formulas are made anew from the sentences. The columns of a CSV are separated by
-    comma, semicolon or tab, whichever splits its header into the most columns.
+    comma, semicolon or tab, whichever splits its header into the most columns. Of a file that
+    ends with `.tlsf`, each formula becomes sentences of the same meaning.
 
     Example: fretc import EXPORT.json -o requirements
     """
     from compiler.files.text_files import read
     from compiler.project.fret_import import read_export
+    from compiler.project.tlsf.importing import read_specification
 
     source = or_fail(read(file))
     columns = {"id": id_column, "text": text_column, "project": project_column}
-    result = read_export(source, {part: name for part, name in columns.items() if name})
+    if file.lower().endswith(".tlsf"):
+        result = read_specification(source)
+    else:
+        result = read_export(source, {part: name for part, name in columns.items() if name})
     print_diagnostics(result.diagnostics)
     if has_errors(result.diagnostics):
         raise SystemExit(EXIT_USAGE)
