@@ -249,9 +249,9 @@ class _Fights:
         if self.exact is not None and self._is_about(every):
             uncertainty = None
         else:
-            uncertainty = (
-                self.strict.left_out or self.generous().of_inputs or self.strict.of_outputs
-            )
+            strict, generous = self.strict, self.generous()
+            uncertainty = strict.left_out or generous.left_out
+            uncertainty = uncertainty or generous.of_inputs or strict.of_outputs
         if uncertainty is None and self.smaller:
             which = "; ".join(map(listed, self.smaller))
             why = self.strict.left_out or self.strict.of_inputs or self.strict.of_outputs
