@@ -44,6 +44,7 @@ _HELP = f"""From FRETish requirements to runtime monitors, audited logs and a tr
 _GROUPS = {
     "Write requirements": {
         "check": ("check:check", "Report errors and warnings of a project, before any run."),
+        "write": ("write:write", "Write FRETish from plain English, and choose by short runs."),
         "explain": ("explain:explain", "Explain a requirement with traces, or a message code."),
         "init": ("init:init", "Create a project: requirement, bindings and hazards."),
         "bind": ("bind:bind", "Draft bindings from a log, or check bindings against logs."),
@@ -51,6 +52,7 @@ _GROUPS = {
         "play": ("play:play", "Make a page on which you edit a trace and see the verdicts."),
         "fmt": ("formalize:fmt", "Rewrite sentences in canonical wording."),
         "import": ("formalize:import_", "Import requirements that FRET has exported."),
+        "lsp": ("lsp:lsp", "Serve an editor: diagnostics, fixes, completion, rename."),
     },
     "Audit runs": {
         "audit": ("audit:audit", "Check recorded runs against the requirements."),

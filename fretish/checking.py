@@ -109,6 +109,8 @@ def _is_boolean(part: e.Expression, expected: bool) -> bool:
             return expected and name not in _NUMERIC_PREDICATES | _NUMERIC_FUNCTIONS
         case e.Number() | e.Quantity() | e.Word() | e.Negation() | e.Arithmetic():
             return False
+        case e.Calculation():
+            return False
         case (
             e.Truth()
             | e.Comparison()

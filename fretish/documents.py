@@ -139,6 +139,17 @@ def _pairs(source: Source) -> list[tuple[Span | None, Span]] | Diagnostic:
     return pairs
 
 
+def part_at(text: str, offset: int) -> tuple[int, bool]:
+    """Where the header or the sentence around an offset begins, and whether it is a header.
+
+    Args:
+        text: the text of a `.fret` file, which may have mistakes.
+        offset: an offset of the text.
+    """
+    ends = [match.end() for match in _FENCE.finditer(text) if match.end() <= offset]
+    return (ends[-1] if ends else 0), len(ends) % 2 == 1
+
+
 def _stripped(span: Span) -> Span:
     text = span.text
     start = len(text) - len(text.lstrip(f"\ufeff{_WHITE_SPACE}"))

@@ -159,6 +159,19 @@ class Call:
 
 
 @dataclass(frozen=True, slots=True)
+class Calculation:
+    """A computed signal in an expression of bindings: its value stands for its name."""
+
+    name: str
+    value: Expression
+    """Over recorded signals, and other computed ones."""
+    is_rounded: bool = False
+    """Whether the bindings compute it by one of `fretish.bindings.functions.ROUNDED`; then its
+    number is in base units."""
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
 class Persistence:
     """`arg for 200 ms`: arg has been true, without a break, for that long (nanoseconds)."""
 
@@ -182,6 +195,7 @@ Expression = (
     | Implies
     | Iff
     | Call
+    | Calculation
     | Persistence
 )
 
@@ -211,6 +225,8 @@ def children(expression: Expression) -> tuple[Expression, ...]:
             return args
         case Call(_, args):
             return args
+        case Calculation(_, value):
+            return (value,)
         case (
             Xor(left, right)
             | Implies(left, right)
@@ -234,6 +250,8 @@ def with_children(expression: Expression, parts: Sequence[Expression]) -> Expres
             return Or(tuple(arg for part in parts for arg in _flat(Or, part)))
         case Call():
             return replace(expression, args=tuple(parts))
+        case Calculation():
+            return replace(expression, value=parts[0])
         case Xor() | Implies() | Iff() | Arithmetic() | Comparison():
             return replace(expression, left=parts[0], right=parts[1])
         case _:
@@ -256,6 +274,8 @@ def with_comparisons(
             return replace(expression, left=sides[0], right=sides[1])
         case Truth() | Name() | Number() | Quantity() | Word() | Negation() | Arithmetic():
             return expression
+        case Calculation():
+            return expression
         case _:
             assert_never(expression)
 
@@ -276,7 +296,7 @@ def truths(expression: Expression) -> Iterator[Name]:
         part = waiting.pop()
         if isinstance(part, Name):
             yield part
-        elif not isinstance(part, Comparison | Arithmetic | Negation | Call):
+        elif not isinstance(part, Comparison | Arithmetic | Negation | Call | Calculation):
             waiting.extend(reversed(children(part)))
 
 

@@ -73,6 +73,20 @@ def parse(text: Span) -> s.Sentence | Diagnostic:
     return next(_check(tree), tree)
 
 
+def words(text: str) -> tuple[Token, ...]:
+    """The words of a sentence, right or wrong; what is no word is left out."""
+    return tuple(_parser().known_tokens(text))
+
+
+def continuations(text: str) -> frozenset[str]:
+    """The types of token with which the beginning of a sentence can continue.
+
+    Args:
+        text: the beginning, without a word that is not complete. None can follow a mistake.
+    """
+    return _parser().continuations(text)
+
+
 MOST_ERRORS = 10
 """The largest number of errors that are reported for one sentence."""
 _MOST_CHARACTERS = 10_000

@@ -127,7 +127,7 @@ def _ranked(tree: e.Expression) -> tuple[int, str]:
     match tree:
         case e.Truth(value):
             return _OPERAND, str(value).lower()
-        case e.Name(id):
+        case e.Name(id) | e.Calculation(id):
             return _OPERAND, identifier(id)
         case e.Number(digits):
             return _OPERAND, digits

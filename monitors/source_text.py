@@ -28,6 +28,8 @@ _LIVE = (
     *("perception", "stop_supervisor", "status_publisher"),
 )
 """The modules that a live node needs in addition to its monitor."""
+_FUNCTIONS = ("rounded_functions",)
+"""The modules of the functions of computed signals."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,9 +60,13 @@ def interceptor() -> Runtime:
 
 
 @cache
-def perception() -> Runtime:
-    """The modules that a live node needs in addition to its monitor."""
-    return _joined(_ROOM, _LIVE)
+def perception(*, rounds: bool = False) -> Runtime:
+    """The modules that a live node needs in addition to its monitor.
+
+    Args:
+        rounds: whether it calls the functions of computed signals.
+    """
+    return _joined(_ROOM, (*_LIVE, *_FUNCTIONS) if rounds else _LIVE)
 
 
 def _joined(folder: Path, modules: Sequence[str]) -> Runtime:

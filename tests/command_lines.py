@@ -17,6 +17,10 @@ VALUES: Mapping[str, Sequence[str]] = {
     "bindings": ("requirements/bindings.toml",),
     "hazards": ("requirements/hazards.toml",),
     "folder": ("requirements",),
+    "pack": ("nav2",),
+    "text": ("{component} must stop",),
+    "choose": ("1",),
+    "id_": ("R9",),
     "what": ("{id}", "requirements/", "F306"),
     "ids": ("{id}",),
     "show": ("{id}",),
@@ -115,6 +119,7 @@ ELSEWHERE = {
     ("watch", "follow"): "waits for what is still to come",
     ("simulate", ""): "simulates a mission of its own, and reads no project",
     ("completion", ""): "prints a script for a shell",
+    ("lsp", ""): "answers an editor at standard input",
 }
 """What has tests of its own alone, and why."""
 WITH: Mapping[tuple[str, str], Sequence[str]] = {

@@ -1,6 +1,7 @@
 """How hard tests try: every case with the full profile of hypothesis, else one here and there.
 
-Logs that others have recorded are read where `FRETC_LOGS` names their folder.
+Logs that others have recorded are read where `FRETC_LOGS` names their folder, and FRET's case
+studies where `FRETC_FRET` names a clone of FRET.
 """
 
 from __future__ import annotations
@@ -19,8 +20,13 @@ from hypothesis import settings
 Case = TypeVar("Case")
 FULL = settings().max_examples > 1000
 LOGS = Path(os.environ.get("FRETC_LOGS", ""))
+FRET = Path(os.environ.get("FRETC_FRET", ""))
 needs_logs = pytest.mark.skipif(
     "FRETC_LOGS" not in os.environ, reason="set FRETC_LOGS to the folder of the public logs"
+)
+
+needs_fret = pytest.mark.skipif(
+    "FRETC_FRET" not in os.environ, reason="set FRETC_FRET to a clone of NASA-SW-VnV/fret"
 )
 
 

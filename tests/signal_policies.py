@@ -36,11 +36,13 @@ from fretish.bindings.declarations import (
     Signal,
     path,
 )
+from fretish.bindings.functions import ROUNDED
 from fretish.clock import Clock
 from fretish.diagnostics.source import Source
 from fretish.units import ONE, unit
 from monitors.kernel import readings
 from monitors.kernel.verdicts import Truth
+from monitors.rounded_functions import rounded
 from tests.emitting import requirement
 
 SIGNS = ("<", "<=", ">", ">=", "=", "!=")
@@ -113,8 +115,11 @@ KINDS: Mapping[str, st.SearchStrategy[Any]] = {
 UNITS = ("m", "cm", "km", "mm")
 
 
-def numbers_of(names: tuple[str, ...]) -> st.SearchStrategy[e.Expression]:
-    """Expressions of bindings that are lengths, as far as anybody checks."""
+def numbers_of(names: tuple[str, ...], *, rounded: bool = False) -> st.SearchStrategy[e.Expression]:
+    """Expressions of bindings that are lengths, as far as anybody checks.
+
+    `rounded`: also computed signals that call a function whose last digits differ by library.
+    """
     leaves = st.one_of(
         st.sampled_from(names).map(e.Name),
         st.builds(e.Quantity, digits, st.sampled_from(UNITS)),
@@ -130,14 +135,24 @@ def numbers_of(names: tuple[str, ...]) -> st.SearchStrategy[e.Expression]:
             st.builds(e.Arithmetic, st.just("^"), st.sampled_from(names).map(e.Name), powers),
             st.builds(e.Call, st.just("abs"), st.tuples(parts)),
             st.builds(e.Call, st.sampled_from(["min", "max"]), few),
+            st.builds(e.Calculation, st.just("v"), parts),
+            *([st.builds(e.Calculation, st.just("w"), _calls(parts), st.just(True))] * rounded),
         )
 
     return st.recursive(leaves, grown, max_leaves=4)
 
 
-def truths_of(names: tuple[str, ...]) -> st.SearchStrategy[e.Expression]:
+def _calls(parts: st.SearchStrategy[e.Expression]) -> st.SearchStrategy[e.Expression]:
+    """Calls of rounded functions, and what is computed of them."""
+    calls = st.sampled_from([*ROUNDED.items()]).flatmap(
+        lambda each: st.builds(e.Call, st.just(each[0]), st.tuples(*[parts] * each[1].least))
+    )
+    return st.one_of(calls, st.builds(e.Call, st.just("min"), st.tuples(calls, parts)))
+
+
+def truths_of(names: tuple[str, ...], *, rounded: bool = False) -> st.SearchStrategy[e.Expression]:
     """Truth values of bindings over numbers; `x` also stands for one itself."""
-    sides = numbers_of(names)
+    sides = numbers_of(names, rounded=rounded)
     leaves = st.one_of(
         st.builds(e.Comparison, st.sampled_from(SIGNS), sides, sides),
         st.builds(
@@ -400,6 +415,8 @@ def number_of(tree: n.Number, row: Mapping[str, Any]) -> Any:
             return readings.power(number_of(base, row), times)
         case n.ToBaseUnit(arg, scale):
             return readings.in_base(number_of(arg, row), readings.exact(str(scale)))
+        case n.RoundedCall(function, args):
+            return rounded(function, *(number_of(arg, row) for arg in args))
         case _:
             assert_never(tree)
 

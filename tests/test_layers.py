@@ -16,7 +16,7 @@ ROOT = Path(__file__).parent.parent
 ORDER = """
 monitors.kernel  monitors
 fretish.classes  fretish.system  fretish.diagnostics  fretish.reading  fretish.error_rules  fretish
-fretish.bindings  fretish.bindings.tables
+fretish.bindings  fretish.bindings.tables  fretish.english
 compiler.files  compiler.logic.diagrams  compiler.logic.ordering  compiler.logic.spelling
 compiler.logic  compiler.formalization  compiler.formalization.numbers
 compiler.situations  compiler.project  compiler.project.tlsf  compiler.agents
@@ -26,7 +26,7 @@ compiler.targets.java  compiler.targets.ros  compiler.targets.javascript
 compiler.targets.automata  compiler.targets.ajpf
 compiler  compiler.explanation
 fretc.logs.signals  fretc.logs.mcap  fretc.logs.messages  fretc.logs.storage  fretc.logs.tables
-fretc.logs.windows
+fretc.logs.agents  fretc.logs.windows
 fretc.logs
 fretc.audit.measurements  fretc.audit.phases  fretc.audit.evidence  fretc.audit.store  fretc.audit
 fretc.audit.selection  fretc.audit.outputs  fretc.audit.bindings
@@ -36,14 +36,15 @@ fretc.verification.javascript  fretc.verification.interceptor
 fretc.verification.loop  fretc.verification.layers  fretc.verification
 fretc.analysis.arena  fretc.analysis.arithmetic  fretc.analysis.games  fretc.analysis.controllers
 fretc.analysis
-fretc.testing  fretc.testing.exports  fretc.testing.conformance  fretc.coverage
+fretc.testing  fretc.testing.exports  fretc.testing.conformance  fretc.writing  fretc.coverage
 fretc.traceability  fretc.attestation  fretc.reproduction
 fretc.report.model  fretc.report.pictures  fretc.report.set_analysis
 fretc.report.sections  fretc.report.front
-fretc.report.across  fretc.report.page  fretc.report.forms  fretc.report  fretc.trends
+fretc.report.across  fretc.report.page  fretc.report.forms  fretc.report  fretc.checking
+fretc.trends
 simulation.world  simulation.nodes  simulation
 fretc.play  fretc.terminal  fretc.rosbridge  fretc.campaigns  fretc.testing.log_synthesis
-fretc.watch.sources  fretc.watch.zenoh  fretc.watch  fretc.watch.publishing
+fretc.watch.sources  fretc.watch.zenoh  fretc.watch  fretc.watch.publishing  fretc.lsp
 fretc.api  fretc.commands  fretc
 """.split()
 ROOMS = {package.partition(".")[0] for package in ORDER}
@@ -61,6 +62,8 @@ CLICK = {
         for m in ROOT.joinpath("fretc", p).glob("*.py")
     ),
 }
+LSP = {f"fretc/lsp/{module.name}" for module in ROOT.glob("fretc/lsp/*.py")}
+"""The types of the protocol are those of the answers; `server.py` alone sends and receives."""
 DOORS = {
     "lark": {
         "compiler/agents/gwendolen.py",
@@ -101,7 +104,7 @@ DOORS = {
         "fretc/logs/mcap/walk.py",
         "fretc/logs/messages/decoding.py",
         "fretc/logs/storage/bags.py",
-        "fretc/logs/storage/ulog.py",
+        "fretc/logs/storage/packed_topics.py",
         "fretc/logs/tables/contents.py",
         "fretc/watch/decoding.py",
         "fretc/watch/recording.py",
@@ -140,6 +143,8 @@ DOORS = {
     "zenoh": {"fretc/watch/zenoh/session.py"},
     "websockets": {"fretc/rosbridge/endpoint.py", "fretc/watch/sources/foxglove.py"},
     "foxglove": {"fretc/watch/publishing/foxglove_server.py"},
+    "pygls": {"fretc/lsp/server.py"},
+    "lsprotocol": LSP,
     "click": CLICK,
     # Only Linux and macOS have these, or only Windows.
     "fcntl": {"compiler/targets/ajpf/runner.py", "fretish/system/files.py"},

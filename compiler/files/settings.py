@@ -15,6 +15,7 @@ from typing import Any
 
 from compiler.files import log_viewer
 from compiler.files.attribution import FIELDS, NOBODY, Attribution, InvalidField, attribution
+from compiler.files.text_files import is_file
 from compiler.files.text_files import read as read_text
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -25,7 +26,7 @@ from fretish.reading.toml_text import read as read_tables
 NAME, SHARED = "fretc.toml", "pyproject.toml"
 _TABLE = ("tool", "fretc")
 """The table of the settings in `pyproject.toml`, which other tools share."""
-_FIELDS = ("parents", "accept", "project", "viewer")
+SETTINGS_FIELDS = ("parents", "accept", "project", "viewer")
 OUTSIDE: ContextVar[tuple[str, ...]] = ContextVar("OUTSIDE", default=())
 """Folders outside of the project that may contain parents, named on the command line."""
 
@@ -73,7 +74,7 @@ def settings(folder: str) -> Settings | Diagnostic:
     for place in places:
         for name, table in ((NAME, ()), (SHARED, _TABLE)):
             path = place / name
-            result = _read(path, places[-1], table) if path.is_file() else None
+            result = _read(path, places[-1], table) if is_file(path) else None
             if result is not None:
                 return result
     return Settings(start)
@@ -132,10 +133,10 @@ def _settings(empty: Settings, table: Any) -> Settings | Diagnostic:
         return _bad_settings(empty, "`fretc` must be a table", "write `[tool.fretc]`")
     assert empty.tables is not None
     for key in table:
-        if key not in _FIELDS:
+        if key not in SETTINGS_FIELDS:
             span = empty.tables.place(*empty.table, key)
             where = f"[{'.'.join(empty.table)}]" if empty.table else NAME
-            return unknown_key(Code.BAD_SETTINGS, key, _FIELDS, span, where)
+            return unknown_key(Code.BAD_SETTINGS, key, SETTINGS_FIELDS, span, where)
     parents, accept = table.get("parents", []), table.get("accept", {})
     if not isinstance(parents, list) or not all(isinstance(path, str) for path in parents):
         fix = 'write `parents = ["build/hazards/json/index.json"]`'

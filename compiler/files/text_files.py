@@ -7,16 +7,19 @@ import hashlib
 import os
 import stat
 import time
-from collections.abc import Iterable, Mapping
-from contextlib import suppress
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from contextvars import ContextVar
 from dataclasses import field
 from pathlib import Path
+from types import MappingProxyType
 from typing import BinaryIO, Literal
 
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic, suggestion
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
+from fretish.reading.memory import same
 from fretish.system.files import NO_WAIT, TO_CREATE, TO_READ, replace, set_permissions
 
 MOST = 2**30
@@ -37,11 +40,49 @@ def read(path: str, errors: Literal["strict", "surrogateescape"] = "strict") -> 
         if path == "-":
             with open(0, "rb", closefd=False) as stdin:
                 return Source("<stdin>", stdin.read().decode("utf-8-sig", errors))
-        return Source(path, content(path).decode("utf-8-sig", errors))
+        text = _unsaved_text(path)
+        if text is None:
+            text = content(path).decode("utf-8-sig", errors)
+        return same(Source(path, text), Source, path, text)
     except UnicodeDecodeError as error:
         return diagnostic("not_text", Source(path, "").span(), path=path, at=error.start)
     except OSError as error:
         return unreadable(path, error)
+
+
+_unsaved: ContextVar[Mapping[str, str]] = ContextVar("_unsaved", default=MappingProxyType({}))
+"""Absolute path → the text that an editor shows for the file."""
+
+
+@contextmanager
+def unsaved_texts(texts: Mapping[str, str]) -> Iterator[None]:
+    """Context in which some files have the text of an editor, whatever the disk has.
+
+    Args:
+        texts: absolute path → text; without a byte order mark.
+    """
+    token = _unsaved.set(texts)
+    try:
+        yield
+    finally:
+        _unsaved.reset(token)
+
+
+def is_file(path: str | Path) -> bool:
+    """Whether there is a regular file, or an editor has a text for the path."""
+    return _unsaved_text(str(path)) is not None or Path(path).is_file()
+
+
+def unsaved_names(folder: str) -> list[str]:
+    """The names of the files of a folder for which an editor has a text."""
+    texts = _unsaved.get()
+    here = os.path.abspath(folder) if texts else ""
+    return [os.path.basename(path) for path in texts if os.path.dirname(path) == here]
+
+
+def _unsaved_text(path: str) -> str | None:
+    texts = _unsaved.get()
+    return texts.get(os.path.abspath(path)) if texts else None
 
 
 def content(path: str | Path) -> bytes:

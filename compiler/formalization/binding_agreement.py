@@ -15,9 +15,10 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import atom
 from fretish import expressions as e
 from fretish import units
+from fretish.bindings.calculations import without_calculations
 from fretish.bindings.canonical import expression as meaning
 from fretish.bindings.comparisons import FUNCTIONS, bound, is_measured
-from fretish.bindings.declarations import Declarations, Proposition, Signal
+from fretish.bindings.declarations import Declarations, MeasuredSignal, Proposition
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
@@ -37,7 +38,8 @@ def check_binding_consistency(
         proposition = declarations.propositions.get(name)
         if proposition is None or name not in stated:
             continue
-        agreed = _agreed(stated[name], proposition.expression, declarations, terms)
+        declared = without_calculations(proposition.expression)
+        agreed = _agreed(stated[name], declared, declarations, terms)
         if agreed is None:
             yield _drifted(requirement, name, stated[name], proposition)
         else:
@@ -52,7 +54,7 @@ def _agreed(
         return None if any(_constant(part) is not None for part in e.parts(stated)) else terms
     if not isinstance(declared, e.Comparison):
         return None
-    if is_measured(stated, declarations.signals):
+    if is_measured(stated, declarations.measured):
         return terms if _is_same(stated, declared, declarations) else None
     sided = _constant(stated.left) is not None or _constant(stated.right) is not None
     if stated.op == declared.op:
@@ -67,7 +69,7 @@ def _agreed(
 
 def _is_same(stated: e.Comparison, declared: e.Comparison, declarations: Declarations) -> bool:
     """Whether a comparison of signals equals its declaration, each number in its unit."""
-    own = bound(stated, declarations.signals, declarations.source.span(0, 0))
+    own = bound(stated, declarations.measured, declarations.source.span(0, 0))
     if isinstance(own, Diagnostic):
         return False
     turned = e.Comparison(_MIRRORED[declared.op], declared.right, declared.left)
@@ -172,6 +174,7 @@ def _drifted(
         requirement=requirement.id,
         text=bound.span.text,
         where=where,
+        related=(bound.span,),
     )
 
 
@@ -187,6 +190,8 @@ def unbound_propositions(
     proposed: the nearest name may be another safety claim.
     """
     for name in requirement.watched:
+        if name in declarations.propositions and not declarations.mistakes:
+            continue
         mistakes = _mistakes(name, requirement.stated.get(name), declarations)
         yield from mistakes
         if mistakes or name in declarations.propositions:
@@ -205,7 +210,7 @@ def broken_tables(
     requirement: FormalizedRequirement, declarations: Declarations
 ) -> Iterator[Diagnostic]:
     """The errors in the tables of propositions and signals that a requirement reads."""
-    for name in requirement.watched:
+    for name in requirement.watched if declarations.mistakes else ():
         yield from _mistakes(name, requirement.stated.get(name), declarations)
 
 
@@ -219,7 +224,7 @@ def _mistakes(
 
 
 def missing_signals(
-    requirement: FormalizedRequirement, name: str, signals: Mapping[str, Signal]
+    requirement: FormalizedRequirement, name: str, signals: Mapping[str, MeasuredSignal]
 ) -> tuple[str, ...]:
     """The undeclared signals of a comparison, without which the comparison needs its own binding.
 
@@ -243,12 +248,12 @@ def binding_fix(requirement: FormalizedRequirement, name: str, declarations: Dec
     That is signals for a comparison, a comparison for a value of a signal, else a proposition.
     """
     file = declarations.source.name
-    missing = missing_signals(requirement, name, declarations.signals)
+    missing = missing_signals(requirement, name, declarations.measured)
     if missing:
         tables = " and ".join(f"`[signal.{as_key(signal_name)}]`" for signal_name in missing)
         return f"add {tables} with its `path` to {file}; `fretc bind --from LOG` drafts signals"
     bind = f"add `[proposition.{as_key(name)}]` with its `expr` to {file}"
-    signal = next((s.name for s in declarations.signals.values() if name in s.values), None)
+    signal = next((s.name for s in declarations.measured.values() if name in s.values), None)
     if signal is None:
         return bind
     return (

@@ -32,6 +32,7 @@ from fretish.documents import RequirementEntry
 from fretish.expressions import Comparison, Expression, Truth, with_comparisons
 from fretish.parser import find_errors, parse
 from fretish.reading.limits import with_budget
+from fretish.reading.memory import remembered
 from fretish.reading.recursion import with_recursion_limit
 from fretish.syntax import Sentence, with_expressions
 
@@ -183,6 +184,7 @@ def _rule(
     )
 
 
+@remembered
 def _glossary(declarations: Declarations | None) -> Mapping[str, Variable]:
     """The declaration of each variable; a bound proposition has its binding's role and text.
 
@@ -203,7 +205,7 @@ def _glossary(declarations: Declarations | None) -> Mapping[str, Variable]:
     }
     bound |= {
         name: Variable(name, role=str(signal.role))
-        for name, signal in declarations.signals.items()
+        for name, signal in declarations.measured.items()
         if signal.role is not None and name not in bound
     }
     named = {
@@ -235,7 +237,7 @@ def _remarks(sentence: Sentence, declarations: Declarations | None) -> Iterator[
 
 def _without_signals(sentence: Sentence, declarations: Declarations | None) -> Sentence:
     """The sentence without the comparisons that are evaluated directly over signals."""
-    signals = declarations.signals if declarations else {}
+    signals = declarations.measured if declarations else {}
 
     def answered(comparison: Comparison) -> Expression:
         return Truth(True) if is_measured(comparison, signals) else comparison
@@ -263,6 +265,7 @@ def duplicate_ids(
                 requirement=requirement.id,
                 source=span.source.name,
                 line=span.line,
+                related=(span,),
             )
             diagnostics.setdefault(earlier, diagnostics[requirement])
     return diagnostics

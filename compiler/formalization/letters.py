@@ -132,7 +132,7 @@ def _formula(expression: e.Expression) -> f.Formula:
 
 def impossible_combinations(requirement: FormalizedRequirement) -> tuple[Exclusion, ...]:
     """The comparisons of a requirement that exclude each other, whatever is measured."""
-    signals = requirement.declarations.signals if requirement.declarations else {}
+    signals = requirement.declarations.measured if requirement.declarations else {}
     scales = {name: signal.scale for name, signal in signals.items()}
     words = {name: signal.values for name, signal in signals.items() if signal.values}
     return exclusions(comparisons(requirement), scales, words)
@@ -165,7 +165,7 @@ def all_comparisons(requirement: FormalizedRequirement) -> Mapping[str, e.Compar
 
 
 def _is_of_one_moment(name: str, part: e.Comparison, declarations: Declarations) -> bool:
-    signals = declarations.signals
+    signals = declarations.measured
     read = [signals[node.id] for node in e.names(part) if node.id in signals]
     if any(signal.scale != signal.unit.factor for signal in read):
         return False  # its numbers are not compared in the unit of the sentence

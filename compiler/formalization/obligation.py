@@ -245,7 +245,15 @@ def boolean(expression: e.Expression, expand: Expand) -> f.Formula:
             return f.implies(read(left), read(right))
         case e.Iff(left, right):
             return f.iff(read(left), read(right))
-        case e.Number() | e.Quantity() | e.Word() | e.Negation() | e.Arithmetic() | e.Persistence():
+        case (
+            e.Number()
+            | e.Quantity()
+            | e.Word()
+            | e.Negation()
+            | e.Arithmetic()
+            | e.Calculation()
+            | e.Persistence()
+        ):
             raise AssertionError(f"not a truth value of a sentence: {expression}")
         case _:
             assert_never(expression)

@@ -15,7 +15,8 @@ from compiler.formalization.obligation import atom, variable
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.bindings import comparisons
-from fretish.bindings.declarations import Aggregate, Declarations, Part, Proposition, Signal
+from fretish.bindings.calculations import with_calculations
+from fretish.bindings.declarations import Aggregate, Declarations, MeasuredSignal, Part, Proposition
 from fretish.bindings.definitions import expanded
 from fretish.bindings.expressions import ticks_back
 from fretish.bindings.words import resolve_words
@@ -31,7 +32,7 @@ def in_own_units(
     sentence: Sentence, declarations: Declarations, span: Span
 ) -> Sentence | Diagnostic:
     """The sentence with names resolved to signals' values, and with the signals' units."""
-    signals = declarations.signals
+    signals = declarations.measured
     mistakes: list[Diagnostic] = []
 
     def converted(comparison: e.Comparison) -> e.Comparison:
@@ -52,7 +53,7 @@ def in_own_units(
 
 def _worded(sentence: Sentence, declarations: Declarations, span: Span) -> Sentence | Diagnostic:
     """The sentence as written, with names resolved to signals' values."""
-    signals = _without(declarations.propositions, declarations.signals)
+    signals = _without(declarations.propositions, declarations.measured)
     mistakes: list[Diagnostic] = []
 
     def rewritten(expression: e.Expression) -> e.Expression:
@@ -67,8 +68,8 @@ def _worded(sentence: Sentence, declarations: Declarations, span: Span) -> Sente
 
 
 def _without(
-    propositions: Mapping[str, Proposition], signals: Mapping[str, Signal]
-) -> Mapping[str, Signal]:
+    propositions: Mapping[str, Proposition], signals: Mapping[str, MeasuredSignal]
+) -> Mapping[str, MeasuredSignal]:
     """The signals without numeric signals that share their name with a proposition."""
     return {
         name: signal
@@ -94,16 +95,17 @@ def with_signal_atoms(
         broken = _mistakes(part, declarations)
         if broken:
             mistakes[("proposition", name)] = broken
-        elif comparisons.is_measured(part, declarations.signals):
+        elif comparisons.is_measured(part, declarations.measured):
             bound = _bound(part, declarations, requirement.entry.wording)
             if isinstance(bound, Diagnostic):
                 return bound
             span = getattr(part, "span", None) or requirement.entry.wording
-            aggregate = _aggregate(bound, declarations.signals, span)
+            aggregate = _aggregate(bound, declarations.measured, span)
             if isinstance(aggregate, Diagnostic):
                 return aggregate
+            expression = with_calculations(bound, declarations.computed)
             propositions[name] = Proposition(
-                name, bound, printed(own), aggregate=aggregate, span=span
+                name, expression, printed(own), aggregate=aggregate, span=span
             )
     return replace(
         requirement, declarations=with_propositions(declarations, propositions, mistakes)
@@ -111,7 +113,7 @@ def with_signal_atoms(
 
 
 def _aggregate(
-    expression: e.Expression, signals: Mapping[str, Signal], span: Span
+    expression: e.Expression, signals: Mapping[str, MeasuredSignal], span: Span
 ) -> Aggregate | Diagnostic:
     """The aggregation of several samples in one tick, as the signals declare it."""
     read = [signals[name.id] for name in e.names(expression) if name.id in signals]
@@ -169,11 +171,11 @@ def _mistakes(part: e.Expression, declarations: Declarations) -> tuple[Diagnosti
     """Errors of the signals that the part reads; empty if it also reads an undeclared name."""
     names = [name.id for name in e.names(part)]
     own = [declarations.mistakes.get(("signal", name), ()) for name in names]
-    all_declared = all(name in declarations.signals or own[i] for i, name in enumerate(names))
+    all_declared = all(name in declarations.measured or own[i] for i, name in enumerate(names))
     return tuple(dict.fromkeys(chain.from_iterable(own))) if all_declared else ()
 
 
 def _bound(part: e.Expression, declarations: Declarations, span: Span) -> e.Expression | Diagnostic:
     if not isinstance(part, e.Comparison):
         return part
-    return comparisons.bound(part, declarations.signals, span)
+    return comparisons.bound(part, declarations.measured, span)

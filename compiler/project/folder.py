@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,7 +13,6 @@ from compiler.files.settings import Settings, settings
 from compiler.files.text_files import read
 from compiler.formalization.formalize import duplicate_ids, formalize, unreadable_sentence
 from compiler.formalization.formalized import FormalizedRequirement
-from compiler.formalization.resolution import with_propositions
 from compiler.project.acceptances import acceptances, with_acceptance_reasons
 from compiler.project.hazards import cycles, unknown_parents
 from compiler.project.hazards import hazards as read_hazards
@@ -30,7 +30,9 @@ from fretish.bindings.declarations import SHARED, Declarations
 from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 from fretish.diagnostics.messages import diagnostic
+from fretish.diagnostics.source import Source
 from fretish.documents import RequirementEntry, requirements, unreadable_file
+from fretish.reading.memory import remembered
 
 if TYPE_CHECKING:
     from compiler.project.parents import Parent
@@ -97,11 +99,16 @@ def _with_atoms(
     declarations: Declarations | None, requirements: Sequence[FormalizedRequirement]
 ) -> Declarations | None:
     """The declarations extended by the atoms over signals of all requirements."""
+    if declarations is None:
+        return None
+    propositions, mistakes = {**declarations.propositions}, {**declarations.mistakes}
     for requirement in requirements:
-        if declarations is not None and requirement.declarations is not None:
-            own = requirement.declarations
-            declarations = with_propositions(declarations, own.propositions, own.mistakes)
-    return declarations
+        own = requirement.declarations
+        if own is not None and own.propositions is not declarations.propositions:
+            propositions.update(own.propositions)
+        if own is not None and own.mistakes is not declarations.mistakes:
+            mistakes.update(own.mistakes)
+    return replace(declarations, propositions=propositions, mistakes=mistakes)
 
 
 def _written(paths: Sequence[str]) -> list[RequirementEntry]:
@@ -112,8 +119,13 @@ def _written(paths: Sequence[str]) -> list[RequirementEntry]:
         if isinstance(source, Diagnostic):
             entries.append(unreadable_file(path, source))
         else:
-            entries.extend(requirements(source)[0])
+            entries.extend(_entries(source))
     return entries
+
+
+@remembered
+def _entries(source: Source) -> tuple[RequirementEntry, ...]:
+    return requirements(source)[0]
 
 
 _MOST_BROKEN_HEADERS = 100
@@ -144,11 +156,9 @@ def _formalized(
     for entry in written:
         requirement, remarks = None, entry.mistakes
         if remarks and len(failed) < _MOST_BROKEN_HEADERS:
-            remarks = (*remarks, *unreadable_sentence(entry))
+            remarks = (*remarks, *_unreadable_sentence(entry))
         if not entry.mistakes:
-            requirement, remarks = formalize(entry, declarations)
-        if requirement is not None and requirement.declarations is not None:
-            remarks = (*remarks, *check_stated_numbers(requirement, requirement.declarations))
+            requirement, remarks = _requirement(entry, declarations)
         diagnostics.extend(remark for remark in remarks if remark.code not in unsaid)
         if requirement is None:
             failed.append(UnformalizedRequirement(entry, _reason(remarks), remarks))
@@ -157,6 +167,20 @@ def _formalized(
         if has_errors(remarks):
             mistaken.setdefault(entry, _reason(remarks))
     return tuple(requirements), tuple(failed), mistaken, _with_one_missing_clock(diagnostics)
+
+
+_unreadable_sentence = remembered(unreadable_sentence)
+
+
+@remembered
+def _requirement(
+    entry: RequirementEntry, declarations: Declarations | None
+) -> tuple[FormalizedRequirement | None, tuple[Diagnostic, ...]]:
+    """The formalized requirement, or None if there is an error; and all of its diagnostics."""
+    requirement, remarks = formalize(entry, declarations)
+    if requirement is not None and requirement.declarations is not None:
+        remarks = (*remarks, *check_stated_numbers(requirement, requirement.declarations))
+    return requirement, remarks
 
 
 def _with_one_missing_clock(diagnostics: Sequence[Diagnostic]) -> list[Diagnostic]:
@@ -223,7 +247,10 @@ def _declarations(
     source = read(path)
     if isinstance(source, Diagnostic):
         return None, (source,)
-    declarations, remarks = read_bindings(source)
+    declarations, remarks = _bindings(source)
     if declarations is not None and any((kind, "") in declarations.mistakes for kind in reads):
         return None, remarks
     return declarations, remarks
+
+
+_bindings = remembered(read_bindings)

@@ -19,7 +19,7 @@ from fretish.reading.natural_order import natural
 from fretish.reading.toml_text import Tables
 from fretish.reading.toml_text import read as read_tables
 
-_FIELDS = ("title", "text", "severity", "source")
+FIELDS = ("title", "text", "severity", "source")
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,8 +55,8 @@ def _mistakes(tables: Tables, id: str, fields: Any) -> list[Diagnostic]:
         return [wrong(f"`{id}` is not a hazard table", f'write `[{id}]`, then `title = "..."`', id)]
     diagnostics = []
     for key, value in fields.items():
-        if key not in _FIELDS:
-            fields_text = ", ".join(_FIELDS)
+        if key not in FIELDS:
+            fields_text = ", ".join(FIELDS)
             diagnostics.append(
                 wrong(f"`{key}` is not a field of a hazard", f"it may have {fields_text}", id, key)
             )

@@ -196,7 +196,7 @@ def lustre(tree: e.Expression) -> str | None:
 
 def _has(part: e.Expression) -> bool:
     match part:
-        case e.Quantity() | e.Word() | e.Persistence() | e.Arithmetic("^"):
+        case e.Quantity() | e.Word() | e.Persistence() | e.Calculation() | e.Arithmetic("^"):
             return False
         case e.Name(id) | e.Call(id):
             return re.fullmatch(r"[A-Za-z_]\w*", id) is not None and id not in LUSTRE
@@ -233,7 +233,7 @@ def _text(tree: e.Expression) -> str:
             return f"{_inner(left)} {'<>' if op == '!=' else op} {_inner(right)}"
         case e.Arithmetic(op, left, right):
             return f"{_inner(left)} {op} {_inner(right)}"
-        case e.Quantity() | e.Word() | e.Persistence():
+        case e.Quantity() | e.Word() | e.Persistence() | e.Calculation():
             raise AssertionError("Lustre has none")
         case _:
             assert_never(tree)

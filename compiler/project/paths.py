@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from compiler.files.text_files import unreadable
+from compiler.files.text_files import is_file, unreadable, unsaved_names
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
@@ -21,12 +21,12 @@ def requirement_files(folder: str) -> list[str] | Diagnostic:
     """The `.fret` files of a folder in natural order (`r2` before `r10`); or the given file."""
     try:
         if not _is_folder(folder):
-            return [folder] if Path(folder).is_file() else _absent("there is no folder", folder)
-        listed = (name for name in os.listdir(folder) if name.endswith(".fret"))
-        names = sorted(listed, key=natural)
+            return [folder] if is_file(folder) else _absent("there is no folder", folder)
+        names = dict.fromkeys((*os.listdir(folder), *unsaved_names(folder)))
+        listed = sorted((name for name in names if name.endswith(".fret")), key=natural)
     except OSError as error:
         return unreadable(folder, error)
-    paths = [str(Path(folder) / name) for name in names]
+    paths = [str(Path(folder) / name) for name in listed]
     return [path for path in paths if not _is_folder(path)] or _absent(
         "no requirement (`*.fret`) is in", folder
     )
@@ -58,9 +58,7 @@ def expanded_paths(paths: Sequence[str]) -> list[str] | Diagnostic:
 
 def sibling_path(folder: str, name: str) -> str | None:
     """The path of a file in the requirements folder; None if it is missing."""
-    return first_sibling_path(
-        [folder if os.path.isfile(folder) else str(Path(folder) / "any")], name
-    )
+    return first_sibling_path([folder if is_file(folder) else str(Path(folder) / "any")], name)
 
 
 def companions(paths: Sequence[str]) -> tuple[str, ...]:
@@ -75,4 +73,5 @@ def first_sibling_path(paths: Sequence[str], name: str) -> str | None:
     """The path of a file in the folder of the first path; None if it is missing."""
     first = next((path for path in paths if path != "-"), None)
     path = str(Path(first).parent / name) if first else None
-    return path if path is not None and os.path.exists(path) else None
+    exists = path is not None and (is_file(path) or os.path.exists(path))
+    return path if exists else None

@@ -102,7 +102,11 @@ def _propositions(
     if name in declarations.propositions:
         return [declarations.propositions[name]]
     own = (declarations.propositions.get(watched) for watched in requirement.watched)
-    return [proposition for proposition in own if proposition and name in proposition.signals]
+    return [
+        proposition
+        for proposition in own
+        if proposition and name in (*proposition.signals, *proposition.calculations)
+    ]
 
 
 # Title and text

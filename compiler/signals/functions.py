@@ -13,7 +13,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.identifiers import legal_names
 from compiler.signals.policies import InstantFunctions, PropositionFunctions, SamplePolicy, instant
 from compiler.signals.printing import NumberSyntax, Printer
-from fretish.bindings.declarations import Aggregate, Reading, Reduce
+from fretish.bindings.declarations import Aggregate, ComputedSignal, MeasuredSignal, Reading, Reduce
 from fretish.classes.frozen import dataclass
 
 
@@ -93,10 +93,14 @@ def functions(
         language: the syntax of the target language.
         reserved: reserved names.
     """
-    at_instant = instant(requirements)
+    at_instant = instant(requirements, gives_rounded=True)
     if at_instant is None:
         return None
-    signals = legal_names((policy.signal.name for policy in at_instant.policies), reserved)
+    inputs: tuple[MeasuredSignal, ...] = (
+        *(policy.signal for policy in at_instant.policies),
+        *at_instant.given,
+    )
+    signals = legal_names((signal.name for signal in inputs), reserved)
     given = {name: f"s_{legal}" for name, legal in signals.items()}
     durations = _durations(at_instant, names, reserved)
     printers = {
@@ -105,8 +109,12 @@ def functions(
     }
     return Functions(
         _notes(requirements, at_instant),
-        tuple(
-            _signal(policy, signals[policy.signal.name], language) for policy in at_instant.policies
+        (
+            *(
+                _signal(policy, signals[policy.signal.name], language)
+                for policy in at_instant.policies
+            ),
+            *(_computed(signal, signals[signal.name]) for signal in at_instant.given),
         ),
         tuple(
             HeldCondition(
@@ -174,6 +182,25 @@ def _signal(policy: SamplePolicy, name: str, language: NumberSyntax) -> SignalFu
         (invalid.nan, invalid.positive_infinity, invalid.negative_infinity, invalid.other),
         signal.values,
         signal.numbers,
+    )
+
+
+def _computed(signal: ComputedSignal, name: str) -> SignalFunction:
+    unit = str(signal.unit)
+    place = signal.text + (f", in {unit}" if unit else "")
+    return SignalFunction(
+        name,
+        place,
+        f"The number of {signal.name} is computed by the caller, unknown where one of its signals "
+        f"is: {place}. Its last digits depend on the library of functions.",
+        "given",
+        None,
+        None,
+        None,
+        (),
+        (Reading.UNKNOWN,) * 4,
+        (),
+        (),
     )
 
 

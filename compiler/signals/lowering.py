@@ -15,6 +15,7 @@ from typing import Literal
 from compiler.signals import numbers as n
 from fretish import expressions as e
 from fretish.bindings.constants import called, computed, quantity, whole_exponent
+from fretish.bindings.functions import ROUNDED
 from fretish.classes.frozen import dataclass
 from fretish.units import ONE, Unit
 
@@ -56,6 +57,8 @@ class Lowering:
     """The values of each enumerated signal; its number is the index of the value."""
     unit: Unit = ONE
     """The unit in which quantities are read."""
+    gives_rounded: bool = False
+    """Whether the caller gives the numbers of computed signals that call a rounded function."""
     held: list[tuple[n.Truth, int]] = field(default_factory=list)
     """Conditions that must have held, with nanoseconds, in the order of `HeldFor.place`."""
 
@@ -123,8 +126,22 @@ class Lowering:
                 return abs(term) if isinstance(term, Fraction) else _applied("absolute", term)
             case e.Call("min" | "max" as name, args):
                 return _end(name, [self._term(arg) for arg in args])
+            case e.Call(name, args) if name in ROUNDED:
+                return _rounded(name, [self._term(arg) for arg in args])
+            case e.Calculation():
+                return self._calculation(tree)
             case _:
                 raise AssertionError("the reader of bindings refuses it as a number")
+
+    def _calculation(self, tree: e.Calculation) -> _Term:
+        """The number of a computed signal: its expression, or the caller's number."""
+        if not tree.is_rounded:
+            return self._term(tree.value)
+        if self.gives_rounded:
+            return _ScaledNumber(n.SignalValue(tree.name))
+        term = _factor(self._term(tree.value))
+        is_base = isinstance(term.number, n.RoundedCall)
+        return term if is_base else _ScaledNumber(_in_base(term))
 
 
 def _together(
@@ -140,6 +157,12 @@ def _together(
 
 def _in_base(term: _ScaledNumber) -> n.Number | None:
     return None if term.number is None else n.ToBaseUnit(term.number, term.scale)
+
+
+def _rounded(name: str, args: Sequence[_Term]) -> _ScaledNumber:
+    numbers = [term.number if term.scale == 1 else _in_base(term) for term in map(_factor, args)]
+    known = tuple(number for number in numbers if number is not None)
+    return _ScaledNumber(n.RoundedCall(name, known)) if len(known) == len(numbers) else _UNKNOWN
 
 
 def _applied(function: Literal["negative", "absolute"], term: _ScaledNumber) -> _ScaledNumber:

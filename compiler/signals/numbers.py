@@ -3,7 +3,7 @@
 A number is a 32-bit float, a 64-bit float, or exact: an integer of 64 bits from 2^53 on, or the
 least or greatest of such an integer and another number. A number may be unknown, and so is every
 number computed from it. `monitors.kernel.readings` has a function for each of these nodes except
-`SignalValue`; a constant becomes the nearest number of the kind that it meets.
+`SignalValue` and `RoundedCall`; a constant becomes the nearest number of the kind that it meets.
 """
 
 from __future__ import annotations
@@ -76,7 +76,15 @@ class ToBaseUnit:
     scale: Fraction
 
 
-Number = SignalValue | Constant | UnaryCall | Computed | MinMax | Power | ToBaseUnit
+@dataclass(frozen=True, slots=True)
+class RoundedCall:
+    """A function of `monitors/rounded_functions.py`, of 64-bit floats in base units."""
+
+    function: str
+    args: tuple[Number, ...]
+
+
+Number = SignalValue | Constant | UnaryCall | Computed | MinMax | Power | ToBaseUnit | RoundedCall
 
 
 @dataclass(frozen=True, slots=True)

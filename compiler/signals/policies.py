@@ -15,18 +15,26 @@ a language:
 A value that depends on several instants is an input: `... for 200 ms` is `HeldFor`. A proposition
 that looks back by ticks (`pre`) is not a function of an instant, and is listed in
 `InstantFunctions.left_out`. A mean and a clearance are not exact in other languages: their signals
-are given as one number (`is_given`).
+are given as one number (`is_given`). So are computed signals that call a function whose last digits
+differ from one library to the next (`InstantFunctions.given`); only Python computes them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.signals import numbers as n
 from compiler.signals.lowering import Lowering
 from fretish import expressions as e
-from fretish.bindings.declarations import Aggregate, Proposition, Reduce, Signal
+from fretish.bindings.declarations import (
+    Aggregate,
+    ComputedSignal,
+    MeasuredSignal,
+    Proposition,
+    Reduce,
+    Signal,
+)
 from fretish.bindings.expressions import ticks_back
 from fretish.classes.frozen import dataclass
 
@@ -76,28 +84,55 @@ class InstantFunctions:
     meanings: tuple[PropositionFunctions, ...]
     left_out: tuple[str, ...]
     """Bound propositions that look back by ticks: the caller gives their truth value."""
+    given: tuple[ComputedSignal, ...] = ()
+    """The computed signals whose number the caller gives, in base units."""
 
 
-def instant(requirements: Sequence[FormalizedRequirement]) -> InstantFunctions | None:
-    """The instant of all propositions of the requirements; None if there are no bindings."""
+def instant(
+    requirements: Sequence[FormalizedRequirement], *, gives_rounded: bool = False
+) -> InstantFunctions | None:
+    """The instant of all propositions of the requirements; None if there are no bindings.
+
+    Args:
+        requirements: the requirements.
+        gives_rounded: whether the caller gives the numbers of computed signals that call a rounded
+            function.
+    """
     bound = _bound(requirements)
     pure = [proposition for proposition in bound if not ticks_back(proposition.expression)]
-    read = dict.fromkeys(name for proposition in pure for name in proposition.signals)
-    signals = {
+    read = dict.fromkeys(
+        name
+        for proposition in pure
+        for name in _inputs(proposition.expression, gives_rounded=gives_rounded)
+    )
+    signals: dict[str, MeasuredSignal] = {
         name: signal
         for requirement in requirements
         if requirement.declarations is not None
-        for name, signal in requirement.declarations.signals.items()
+        for name, signal in requirement.declarations.measured.items()
         if name in read
     }
     if not pure:
         return None
-    policies = tuple(policy(signals[name]) for name in read)
-    meanings = tuple(meaning(proposition, signals.values()) for proposition in pure)
+    inputs = [signals[name] for name in read]
+    recorded = [signal for signal in inputs if isinstance(signal, Signal)]
+    meanings = tuple(meaning(each, recorded, gives_rounded=gives_rounded) for each in pure)
     left_out = tuple(
         proposition.name for proposition in bound if ticks_back(proposition.expression)
     )
-    return InstantFunctions(policies, meanings, left_out)
+    given = tuple(signal for signal in inputs if isinstance(signal, ComputedSignal))
+    return InstantFunctions(tuple(map(policy, recorded)), meanings, left_out, given)
+
+
+def _inputs(expression: e.Expression, *, gives_rounded: bool) -> Iterator[str]:
+    """The signals whose numbers the expression needs, left to right."""
+    if isinstance(expression, e.Name):
+        yield expression.id
+    elif gives_rounded and isinstance(expression, e.Calculation) and expression.is_rounded:
+        yield expression.name
+    else:
+        for part in e.children(expression):
+            yield from _inputs(part, gives_rounded=gives_rounded)
 
 
 def _bound(requirements: Sequence[FormalizedRequirement]) -> list[Proposition]:
@@ -118,12 +153,14 @@ def policy(signal: Signal) -> SamplePolicy:
     return SamplePolicy(signal, Lowering(unit=signal.unit).truth(signal.valid), tuple(fields))
 
 
-def meaning(proposition: Proposition, signals: Iterable[Signal]) -> PropositionFunctions:
-    """The meaning of a proposition without `pre`, over declared signals."""
+def meaning(
+    proposition: Proposition, signals: Iterable[Signal], *, gives_rounded: bool = False
+) -> PropositionFunctions:
+    """The meaning of a proposition without `pre`, over declared signals; as in `instant`."""
     scales, words = {}, {}
     for signal in signals:
         scales[signal.name], words[signal.name] = signal.scale, signal.values
-    lowering = Lowering(scales, words)
+    lowering = Lowering(scales, words, gives_rounded=gives_rounded)
     truth = lowering.truth(proposition.expression)
     return PropositionFunctions(
         proposition.name,

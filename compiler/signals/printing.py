@@ -119,6 +119,8 @@ class Printer:
                 return self._call("power", self.number(base), str(times))
             case n.ToBaseUnit(arg, scale):
                 return self._call("in_base", self.number(arg), self.language.scale(scale))
+            case n.RoundedCall(function):
+                raise AssertionError(f"the caller gives the number of {function}")
             case _:
                 assert_never(tree)
 

@@ -44,7 +44,7 @@ def _meaning(
 ) -> e.Expression | None:
     if requirement.declarations is None:
         return part
-    signals = requirement.declarations.signals
+    signals = requirement.declarations.measured
     if isinstance(part, e.Comparison) and is_measured(part, signals):
         comparison = bound(part, signals, requirement.entry.wording)
         if isinstance(comparison, e.Comparison):

@@ -159,7 +159,7 @@ def _with_names(requirement: FormalizedRequirement) -> FormalizedRequirement:
 
 def _mixes_units(requirement: FormalizedRequirement) -> bool:
     """Whether FRET would compare metres with centimetres, since its variables have no units."""
-    signals = requirement.declarations.signals if requirement.declarations else {}
+    signals = requirement.declarations.measured if requirement.declarations else {}
     return any(
         isinstance(part, e.Comparison) and is_mixed(part, signals, requirement.entry.wording)
         for tree in conditions(requirement.written)

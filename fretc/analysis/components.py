@@ -6,30 +6,35 @@ strategy for the same inputs, and the strategies can be combined.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 
 from compiler.formalization.formalized import FormalizedRequirement
 from fretc.analysis.arena.roles import Roles
-from fretish.bindings.declarations import Role
+from fretish import expressions as e
+from fretish.bindings.declarations import Declarations, Role
 
 Tokens = frozenset[str]
 
 
 def tokens(requirement: FormalizedRequirement, roles: Roles, *kinds: Role) -> Tokens:
-    """Variables of these roles that a requirement reads; for a bound proposition, its signals.
+    """Variables of these roles that a requirement reads; of what the bindings compute, the signals.
 
     A variable without a role may have any of them.
     """
     names: set[str] = set()
     for name in requirement.variables:
         if roles.get(name) in (None, *kinds):
-            bound = (
-                requirement.declarations.propositions.get(name)
-                if requirement.declarations
-                else None
-            )
-            names.update(bound.signals if bound else (name,))
+            names.update(_read(name, requirement.declarations))
     return frozenset(names)
+
+
+def _read(name: str, declarations: Declarations | None) -> Iterable[str]:
+    """The signals of a proposition or of a computed signal; the name itself for any other."""
+    if declarations is not None and name in declarations.propositions:
+        return declarations.propositions[name].signals
+    if declarations is not None and name in declarations.computed:
+        return {each.id for each in e.names(declarations.computed[name].value)}
+    return (name,)
 
 
 def by_outputs(

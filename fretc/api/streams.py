@@ -77,10 +77,9 @@ class Stream:
         ignored.
 
         Raises:
-            Refusal: the signal is unknown, the value is neither a number nor a word, the signal
-            needs
-                other fields of its message (then use `add_message`), or the sample is late. The
-                stream does not change.
+            Refusal: the signal is unknown or computed, the value is neither a number nor a word,
+                the signal needs other fields of its message (then use `add_message`), or the
+                sample is late. The stream does not change.
         """
         if self._signal(signal) is not None:
             error = self._truths.add(signal, index(time_ns), value)
@@ -137,6 +136,9 @@ class Stream:
         assert self._declared is not None, "a plan has bindings"
         if name not in self._declared.signal_names:
             raise Refusal((_no_signal(name, self._declared.signal_names),))
+        if name in self._declared.computed:
+            text = self._declared.computed[name].text
+            raise Refusal((diagnostic("sample_of_computed", name=name, text=text),))
         return self._plan.declarations.signals.get(name)
 
     def _step(self, row: Row) -> Tick:

@@ -12,6 +12,7 @@ from fretc.logs.storage.folders import METADATA, Folder, folder, is_folder
 from fretc.logs.storage.listings import below, is_store
 from fretc.logs.storage.log_names import LOGS, STDIN, is_url, name_of
 from fretc.logs.storage.splits import ACTIVE, is_backup, run_name, split
+from fretc.logs.tables.episodes import episode_of, runs_of
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source
@@ -26,7 +27,8 @@ def logs(paths: Sequence[str]) -> list[str] | Diagnostic:
     """The logs of some paths, each once; those of a folder are in order of names.
 
     A folder of rosbag2 with several files is one log, and so are these files if all of them are
-    named. So are the files of `rosbag record --split`.
+    named. So are the files of `rosbag record --split`. A Parquet file with several episodes is
+    several logs.
 
     Args:
         paths: as the user names them; a path that is neither a folder nor a pattern is taken for a
@@ -41,7 +43,8 @@ def logs(paths: Sequence[str]) -> list[str] | Diagnostic:
         for file in files:
             if isinstance(file, Diagnostic):
                 return file
-            by_real_path.setdefault(file if _elsewhere(file) else os.path.realpath(file), file)
+            for run in [file] if _elsewhere(file) else runs_of(file):
+                by_real_path.setdefault(run if _elsewhere(run) else os.path.realpath(run), run)
     try:
         return _whole(by_real_path)
     except OSError as error:
@@ -52,6 +55,10 @@ def files_of(logs: Iterable[str]) -> list[str]:
     """All files of the logs."""
     files: list[str] = []
     for log in logs:
+        episode = None if _elsewhere(log) else episode_of(log)
+        if episode is not None:
+            files.append(episode.file)
+            continue
         run = None if _elsewhere(log) or os.path.lexists(log) else split(log)
         if not _elsewhere(log) and os.path.isdir(log):
             files += [entry.path for entry in os.scandir(log)]

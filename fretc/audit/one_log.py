@@ -22,10 +22,11 @@ from fretc.audit.measurements.states import states
 from fretc.audit.measurements.tallies import tally
 from fretc.audit.measurements.trials import Count, Trials
 from fretc.audit.measurements.unknown_inputs import unknown_inputs, without_brackets
-from fretc.audit.measurements.violations import DemandText, violations
+from fretc.audit.measurements.violations import BoundBeliefs, DemandText, violations
 from fretc.audit.phases.by_shift import Phases, phases
 from fretc.logs import log_diagnostics
 from fretc.logs.sample_fingerprint import fingerprint
+from fretc.logs.signals.computed import computed_samples
 from fretc.logs.signals.enum_values import UnmappedSamples, shown
 from fretc.logs.signals.rates import late_topics, slow_topics
 from fretc.logs.signals.samples import Recording
@@ -35,7 +36,7 @@ from fretc.logs.watch_records import clock_text
 from fretish import expressions as e
 from fretish.bindings.amounts import duration, scaled, seconds, shared_unit
 from fretish.bindings.amounts import margin as margin_text
-from fretish.bindings.declarations import Declarations, Proposition, Signal
+from fretish.bindings.declarations import Declarations, MeasuredSignal, Proposition, Signal
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.printer import expression
@@ -61,6 +62,8 @@ class MonitoredRequirement:
     """The situations to look for in runs; empty: they are not measured."""
     is_assumption: bool = False
     """Whether it demands something of the environment."""
+    beliefs: Mapping[str, str] = field(default_factory=dict)
+    """Proposition → the belief of an agent, where the names differ."""
 
     @property
     def propositions(self) -> tuple[str, ...]:
@@ -86,6 +89,18 @@ def signals_of(declarations: Declarations, propositions: Sequence[str]) -> tuple
             name
             for proposition in propositions
             for name in declarations.propositions[proposition].signals
+        )
+    )
+
+
+@cache_by_identity
+def _computed(declarations: Declarations, propositions: Sequence[str]) -> tuple[str, ...]:
+    """The names of the computed signals of the propositions, in the order of their first use."""
+    return tuple(
+        dict.fromkeys(
+            name
+            for proposition in propositions
+            for name in declarations.propositions[proposition].calculations
         )
     )
 
@@ -203,6 +218,11 @@ def _evidence(
     )
     outcome = judgement.outcome
     signals = signals_of(declarations, requirement.propositions)
+    computed = computed_samples(
+        _computed(declarations, requirement.propositions), declarations, recording
+    )
+    shown = replace(recording, samples={**recording.samples, **computed}) if computed else recording
+    signals = (*signals, *computed)
     pairs = outcome.answers[:]  # the tuple is made, which `states` reads again
     answers = tuple((at(t), at(k)) for t, k in pairs)
     evidence = RunResult(
@@ -223,14 +243,15 @@ def _evidence(
             requirement.demand,
             monitor.REQUIREMENTS[0].deadline_ticks,
             at,
-            recording,
+            shown,
             signals,
+            BoundBeliefs(columns, requirement.beliefs),
         ),
         open=tuple(at(t) for t, _ in outcome.open),
         latencies=tuple(round(k.seconds - t.seconds, 9) for t, k in answers),
         propositions={name: tally(column, ticks) for name, column in columns.items()},
         margins=tuple(margin for name in columns for margin in margins_of[name]),
-        units={name: base_name(declarations.signals[name].unit.dimension) for name in signals},
+        units={name: base_name(declarations.measured[name].unit.dimension) for name in signals},
         hashes={**hash_of(recording), **requirement.hashes},
         health=health,
         assumptions=_assumed(declarations, requirement),
@@ -329,7 +350,7 @@ def _reason(evidence: RunResult, recording: Recording, declarations: Declaration
         case kernel.VIOLATED:
             return _broken(evidence)
         case kernel.NO_DATA:
-            return _unknown(evidence, recording)
+            return _unknown(evidence, recording, declarations)
         case kernel.INCONCLUSIVE if evidence.outcome.verdict in WITHOUT_VIOLATION:
             return "what came after the last whole tick leaves it open"
         case kernel.INCONCLUSIVE:
@@ -341,7 +362,7 @@ def _reason(evidence: RunResult, recording: Recording, declarations: Declaration
         case _:
             return (
                 f"held, {_times(len(evidence.triggers), 'trigger')}{_latency(evidence)}"
-                f"{_margin(evidence, declarations.signals)}"
+                f"{_margin(evidence, declarations.measured)}"
             )
 
 
@@ -358,8 +379,13 @@ def _more(count: int) -> str:
     return f", and at {_times(count - 1, 'other time')}" if count > 1 else ""
 
 
-def _unknown(evidence: RunResult, recording: Recording) -> str:
-    errors = [finding.message for finding in recording.findings if finding.is_error]
+def _unknown(evidence: RunResult, recording: Recording, declarations: Declarations) -> str:
+    of_others = {s.span for s in declarations.signals.values() if s.name not in evidence.units}
+    errors = [
+        finding.message
+        for finding in recording.findings
+        if finding.is_error and (finding.span is None or finding.span not in of_others)
+    ]
     if errors:
         return errors[0]
     if not recording.intact:
@@ -396,7 +422,7 @@ def _latency(evidence: RunResult) -> str:
     return f", answered after {middle} (median), {longest} (longest)"
 
 
-def _margin(evidence: RunResult, signals: Mapping[str, Signal]) -> str:
+def _margin(evidence: RunResult, signals: Mapping[str, MeasuredSignal]) -> str:
     """The threshold that was nearest, as a fraction of its bound; crossed thresholds have none."""
     least = worst(evidence.margins)
     if least is None:

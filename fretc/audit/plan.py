@@ -100,8 +100,14 @@ def planned(
     inputs_of = all_verdict_inputs(
         project, monitors={place: sha256(text) for place, text in texts.items()}
     )
+    is_traced = declarations.agent_trace is not None
     claims = tuple(
-        _claim(requirement, inputs_of[requirement.entry], texts[requirement.entry])
+        _claim(
+            requirement,
+            inputs_of[requirement.entry],
+            texts[requirement.entry],
+            _beliefs(requirement) if is_traced else (),
+        )
         for requirement in requirements
     )
     refused = tuple(_refused(inputs_of, entry, why) for entry, why in unauditable)
@@ -121,8 +127,17 @@ def _refused(
     return RefusedRequirement(requirement.id, wording(requirement), inputs_of[requirement], why)
 
 
+def _beliefs(requirement: FormalizedRequirement) -> tuple[tuple[str, str], ...]:
+    from compiler.targets.ajpf.names import spelt
+
+    return tuple((name, belief) for name, belief in spelt(requirement).items() if name != belief)
+
+
 def _claim(
-    requirement: FormalizedRequirement, verdict_inputs: VerdictInputs, monitor: str
+    requirement: FormalizedRequirement,
+    verdict_inputs: VerdictInputs,
+    monitor: str,
+    beliefs: tuple[tuple[str, str], ...],
 ) -> AuditedRequirement:
     return AuditedRequirement(
         requirement.id,
@@ -133,6 +148,7 @@ def _claim(
         situations(requirement, exact=True),
         chance(requirement),
         requirement.entry.is_assumption,
+        beliefs,
     )
 
 
@@ -167,7 +183,8 @@ def keys(plan: Plan) -> Mapping[str, str]:
     """
     clock, signals = plan.declarations.clock, plan.declarations.signals.values()
     topics = sorted({signal.path.topic for signal in signals})
-    common = [SCHEMA, build_id(), plan.integrity, repr(clock), topics]
+    trace = plan.declarations.agent_trace
+    common = [SCHEMA, build_id(), plan.integrity, repr(clock), topics, trace]
     requirements = zip(plan.claims, monitored_requirements(plan), strict=True)
     return {
         claim.id: sha256(json.dumps([*common, _letters(plan, claim, each.propositions)]))
@@ -218,6 +235,7 @@ def monitored_requirements(plan: Plan) -> tuple[MonitoredRequirement, ...]:
             claim.chance.obligation.atoms if claim.chance else (),
             claim.situations,
             claim.is_assumption,
+            dict(claim.beliefs),
         )
         for claim in plan.claims
     )

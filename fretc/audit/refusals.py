@@ -14,6 +14,7 @@ from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic, has_errors
 from fretish.diagnostics.messages import diagnostic
 from fretish.documents import RequirementEntry
+from fretish.reading.memory import remembered
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,5 +72,11 @@ def _not_auditable(
     requirement: FormalizedRequirement, declarations: Declarations
 ) -> tuple[Diagnostic, ...]:
     """The reasons why no log can be evaluated by a requirement; empty: one can."""
-    refused = monitors.refuse(replace(requirement, pctl=None))
+    refused = _without_monitor(requirement)
     return (*([refused] if refused else []), *unbound_propositions(requirement, declarations))
+
+
+@remembered
+def _without_monitor(requirement: FormalizedRequirement) -> Diagnostic | None:
+    """The reason why there is no monitor of a requirement; None: there is one."""
+    return monitors.refuse(replace(requirement, pctl=None))

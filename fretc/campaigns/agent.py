@@ -14,7 +14,7 @@ import sys
 import tempfile
 import time as times
 from array import array
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -25,16 +25,21 @@ import numpy as np
 
 from compiler.targets.ajpf import runtime
 from compiler.targets.target import TargetOptions
+from fretc.campaigns.agent_faults import HEAP, FaultyConnection, flood, freeze, kill, thaw
 from fretc.campaigns.experiment import SAFETY_REQUIREMENT, declarations, project
 from fretc.rosbridge.endpoint import Endpoint
 from fretish.bindings.declarations import short_type
 from fretish.system.processes import kill_all
+from simulation.mission import EPOCH
+from simulation.world.scenario import AgentFault, Scenario
 
 CLOCK, TRACE = "/clock", "/agent/trace"
 START = 60.0
 """Seconds for the agent to compile, to start and to connect."""
 PATIENCE = 10.0
 """Seconds for the agent to perceive and to act."""
+_REPEAT = 1.0
+"""Seconds after which the time is sent again to an agent that does not answer."""
 _SECOND = 10**9
 
 
@@ -45,9 +50,25 @@ class AgentError(Exception):
 class AgentLink:
     """The running agent: it decides when to stop, and tells what it believes and does."""
 
-    def __init__(self, process: subprocess.Popen[bytes], manifest: Mapping[str, Any]) -> None:
-        """`manifest`: of the emitted folder."""
+    def __init__(
+        self,
+        process: subprocess.Popen[bytes],
+        manifest: Mapping[str, Any],
+        listen: Callable[[int], Endpoint],
+        fault: AgentFault | None = None,
+    ) -> None:
+        """A link that is not connected yet.
+
+        Args:
+            process: the agent.
+            manifest: of the emitted folder.
+            listen: starts the endpoint again, at a port.
+            fault: what goes wrong.
+        """
         self.process = process
+        self._fault, self._listen = fault, listen
+        self._connection = FaultyConnection(fault)
+        self._was_on = False
         self.speaks = True
         """Whether the agent has answered in time."""
         self._stop: str = manifest["stop"]
@@ -77,11 +98,23 @@ class AgentLink:
                 self._answers.put((int(record["time"]), self._requested))
 
     def connected(self, endpoint: Endpoint) -> None:
-        """Wait until the agent listens.
+        """Wait until the agent listens and answers.
 
         Raises:
             AgentError: it has ended, or does not connect in time.
         """
+        self._await(endpoint)
+        self._ask(1, START)
+        if not self.speaks:
+            raise AgentError(f"it has not answered within {START:g} seconds")
+
+    def close(self) -> None:
+        """End the connection."""
+        if self._endpoint is not None:
+            self._endpoint.close()
+
+    def _await(self, endpoint: Endpoint) -> None:
+        """Wait until the agent has subscribed to all topics."""
         self._endpoint = endpoint
         end = times.monotonic() + START
         while not all(endpoint.subscribers(topic) for topic in (CLOCK, *self._topics)):
@@ -90,9 +123,6 @@ class AgentLink:
             if times.monotonic() > end:
                 raise AgentError(f"it has not connected within {START:g} seconds")
             times.sleep(0.02)
-        self._ask(1, START)
-        if not self.speaks:
-            raise AgentError(f"it has not answered within {START:g} seconds")
 
     # What the simulation asks
 
@@ -103,13 +133,42 @@ class AgentLink:
 
     def step(self, time: int) -> bool:
         """Whether the robot must stop now."""
-        demanded = self._ask(max(time, self._now + 1))
+        passed = time - EPOCH
+        self._go_wrong(is_on=self._connection.is_on(passed))
+        wrong = self._connection.step(passed)
+        now = time + wrong
+        demanded = self._ask(now if wrong else max(now, self._now + 1))
         waiting, self._waiting = self._waiting, {}
-        if waiting:
-            for topic, message in waiting.items():
+        arriving = self._connection.carried(waiting, passed)
+        if arriving:
+            for topic, message in arriving:
                 self._publish(topic, message)
             demanded = self._ask(self._now + 1)
         return demanded
+
+    def _go_wrong(self, *, is_on: bool) -> None:
+        """Begin or end the fault."""
+        if self._fault is None or is_on == self._was_on:
+            return
+        self._was_on = is_on
+        assert self._endpoint is not None, "it is connected"
+        match self._fault.kind:
+            case "killed":
+                if is_on:
+                    kill(self.process)
+            case "frozen":
+                (freeze if is_on else thaw)(self.process)
+                self.speaks = True  # It is to be waited for, before it counts as silent.
+            case "out of memory":
+                if is_on:
+                    flood(lambda message: self._publish(min(self._topics), message), self.process)
+            case "endpoint killed" if is_on:
+                self._endpoint.close()
+            case "endpoint killed":
+                self._await(self._listen(self._endpoint.port))
+                self.speaks = True
+            case _:
+                pass  # of the connection
 
     def told(self) -> Sequence[str]:
         """What the agent has told of itself since the last call, as JSON."""
@@ -124,9 +183,14 @@ class AgentLink:
         """The stop request after all that was published, at a time."""
         self._now = time
         seconds, nanoseconds = divmod(time, _SECOND)
-        self._publish(CLOCK, {"clock": {"sec": seconds, "nanosec": nanoseconds}})
+        now = {"clock": {"sec": seconds, "nanosec": nanoseconds}}
+        self._publish(CLOCK, now)
         end = times.monotonic() + (patience if self.speaks else 0)
+        again = times.monotonic() + _REPEAT
         while True:
+            if times.monotonic() > again:  # It may have been lost with a connection.
+                self._publish(CLOCK, now)
+                again += _REPEAT
             if self.process.poll() is not None:
                 end = 0.0
             try:
@@ -136,7 +200,7 @@ class AgentLink:
                     self.speaks = False
                     return True
                 continue
-            if answered >= time:
+            if time <= answered < time + _SECOND:  # Its clock may have been ahead before.
                 self.speaks = True
                 return requested
 
@@ -152,18 +216,18 @@ def _plain(message: Any) -> Any:
 
 
 @contextmanager
-def agent(threshold: float, types: Mapping[str, str]) -> Iterator[AgentLink]:
+def agent(scenario: Scenario, types: Mapping[str, str]) -> Iterator[AgentLink]:
     """The agent of R1, started and connected; it ends with the context.
 
     Args:
-        threshold: metres, in place of the 5 cm of the bindings.
+        scenario: says how far is too close, and what goes wrong with the agent.
         types: topic → ROS type of the robot's topics.
 
     Raises:
         AgentError: MCAPL, Java or the agent cannot be used.
     """
     (requirement,) = (r for r in project().formalized if r.id == SAFETY_REQUIREMENT)
-    requirement = replace(requirement, declarations=declarations(threshold))
+    requirement = replace(requirement, declarations=declarations(scenario.safety.threshold))
     with ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="fretc-agent-")))
         for artifact in runtime.emit([requirement], TargetOptions()):
@@ -173,20 +237,25 @@ def agent(threshold: float, types: Mapping[str, str]) -> Iterator[AgentLink]:
         errors = stack.enter_context((folder / "errors.txt").open("w+b"))
         late: list[AgentLink] = []
         known = {topic: short_type(kind) for topic, kind in types.items()}
-        endpoint = stack.enter_context(
-            Endpoint(known, lambda *message: late[0].receive(*message) if late else None)
-        )
+
+        def listen(port: int = 0) -> Endpoint:
+            return Endpoint(
+                known, lambda *message: late[0].receive(*message) if late else None, port=port
+            )
+
+        endpoint = stack.enter_context(listen())
         process = subprocess.Popen(
             [sys.executable, str(folder / "run.py"), "--url", endpoint.url]
             + ["--clock", CLOCK, "--trace", TRACE],
-            env=dict(os.environ),
+            env={**os.environ, "AGENT_JAVA_OPTIONS": _java_options(scenario)},
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
             stderr=errors,
             start_new_session=True,
         )
         stack.callback(_end, process)
-        link = AgentLink(process, manifest)
+        link = AgentLink(process, manifest, listen, scenario.agent)
+        stack.callback(link.close)
         late.append(link)
         try:
             link.connected(endpoint)
@@ -198,8 +267,16 @@ def agent(threshold: float, types: Mapping[str, str]) -> Iterator[AgentLink]:
         yield link
 
 
+def _java_options(scenario: Scenario) -> str:
+    fault = scenario.agent
+    heap = HEAP if fault is not None and fault.kind == "out of memory" else ""
+    return f"{os.environ.get('AGENT_JAVA_OPTIONS', '')} {heap}".strip()
+
+
 def _end(process: subprocess.Popen[bytes]) -> None:
     """End the agent; its script passes the signal on to Java."""
+    if process.poll() is None:
+        thaw(process)
     process.terminate()
     try:
         process.wait(PATIENCE)

@@ -77,7 +77,7 @@ _AUDIT = {
     "-v",
     "--verbose",
     is_flag=True,
-    help="List every result. Without it, many runs are shown as a table of symbols.",
+    help="List every result and note. Without it, many runs are shown as a table of symbols.",
 )
 @click.option(
     "--integrity",
@@ -164,9 +164,9 @@ _AUDIT = {
 def audit(summary: bool, query: str | None, **options: Any) -> None:
     """Check recorded runs against the requirements and give each a verdict.
 
-    LOG is an MCAP file, a ROS bag, a ULog, a table (.csv, .jsonl), a folder, a quoted pattern
-    ('runs/**/*.mcap'), a URL, a folder or pattern in an object store (s3://bucket/runs/), or
-    `-` for standard input. A rosbag2 folder with several files is one log.
+    LOG is an MCAP file, a ROS bag, a ULog, a DataFlash log, a table (.csv, .jsonl), a folder, a
+    quoted pattern ('runs/**/*.mcap'), a URL, a folder or pattern in an object store
+    (s3://bucket/runs/), or `-` for standard input. A rosbag2 folder with several files is one log.
 
     The verdict of a requirement in a run is satisfied, violated, inconclusive, vacuous or no
     data. A requirement with a probability gets one verdict over all runs: supported, refuted or

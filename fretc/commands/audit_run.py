@@ -50,9 +50,10 @@ from fretc.terminal.output import (
 )
 from fretc.terminal.screen import screen
 from fretish.classes.frozen import dataclass
-from fretish.diagnostics.diagnostic import Diagnostic, has_errors
+from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.rendering import visible
+from fretish.reading.natural_order import by_place
 from fretish.system.processes import FORKS
 from fretish.units import nanoseconds
 
@@ -154,7 +155,8 @@ def run(options: AuditOptions) -> int:
     with ExitStack() as stack:
         result = _audited(job, options.engine, kept, stack)
         diagnostics = job.project.answered(result.diagnostics)
-        print_diagnostics_below(diagnostics, (*job.project.diagnostics, *job.refusals))
+        above = (*job.project.diagnostics, *job.refusals)
+        _print_findings(diagnostics, above, verbose=options.outputs.verbose)
         _write(job, result, options.outputs)
         subject = _subject(job, result, options.plan, began)
         is_bad = job.plan.refused or has_errors((*job.project.diagnostics, *diagnostics))
@@ -164,6 +166,21 @@ def run(options: AuditOptions) -> int:
     if hook is not None:  # The store is closed first, because the command may read it.
         notify(hook, notice)
     return status
+
+
+def _print_findings(
+    diagnostics: Sequence[Diagnostic], above: Sequence[Diagnostic], *, verbose: bool
+) -> None:
+    """Print diagnostics; of the notes that a proposition never changed, a few, unless `verbose`."""
+    unchanged = by_place([each for each in diagnostics if each.code is Code.NEVER_CHANGED])
+    hidden = [] if verbose or len(unchanged) <= _FEW else unchanged[_FEW:]
+    print_diagnostics_below([each for each in diagnostics if each not in hidden], above)
+    if hidden:
+        print_status(f"\n{len(hidden)} more propositions never changed (F314): `-v` lists them")
+
+
+_FEW = 3
+"""Propositions that never changed, of which each is printed in full."""
 
 
 # Before the audit -------------------------------------------------------------------------------

@@ -224,6 +224,8 @@ def _violation(result: Result, violation: Violation) -> Iterator[str]:
     known = f"; recorded: {values(result, violation)}" if violation.values else ""
     if violation.missing or known:
         yield f"demanded: {violation.missing}{known}"
+    for belief in violation.beliefs or ():
+        yield f"agent: {belief.in_words()}"
     for threshold in result.thresholds:
         if _is_in(threshold.proposition, violation.missing):
             yield f"limit: {_limit(threshold)}"

@@ -169,7 +169,7 @@ def _update(log: str, requirements: str, bindings: str | None) -> None:
     declared = project.declarations
     if file is None or declared is None:
         fail(diagnostic("no_bindings_to_update"))
-    known = {*declared.signals, *declared.propositions, *(name for _, name in declared.mistakes)}
+    known = {*declared.measured, *declared.propositions, *(name for _, name in declared.mistakes)}
     propositions = [each for each in missing_propositions(project) if each.name not in known]
     signals = [each for each in missing_signals(project) if each.name not in known]
     if not propositions and not signals:

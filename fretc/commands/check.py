@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 import click
 
-from compiler.files.dates import today
 from fretc.terminal.options import (
     analysis_option,
     bindings_option,
@@ -30,7 +29,6 @@ from fretc.terminal.output import (
     print_status,
     write_outputs,
 )
-from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic, has_errors
 from fretish.diagnostics.rendering import as_json, visible
 
@@ -38,8 +36,6 @@ if TYPE_CHECKING:
     from compiler.project.project import Project
     from fretc.analysis.evidence import AnalyzedSet
     from fretish.documents import RequirementEntry
-
-T = TypeVar("T")
 
 
 @click.command(
@@ -88,78 +84,15 @@ def check(
     Example: fretc check --fix
     """
     from compiler.project.folder import load_folder
+    from fretc.checking.diagnostics import SideFiles, project_diagnostics
 
     if fix:
         _fix(requirements)
     project = or_fail(load_folder(requirements, bindings, hazards))
-    files = _Files(requirements, evidence_path(evidence), verification, analysis)
-    diagnostics = [*project.diagnostics, *_found(project, files, analyze=analyze)]
-    _finish(tuple(dict.fromkeys(diagnostics)), project.requirements, output_format)
-
-
-@dataclass(frozen=True, slots=True)
-class _Files:
-    """Paths beside those of the project."""
-
-    requirements: str
-    evidence: str
-    verification: str | None
-    analysis: str | None
-
-
-def _found(project: Project, files: _Files, *, analyze: bool) -> list[Diagnostic]:
-    """Diagnostics of all files together, in the order of the checks."""
-    from compiler.project.paths import sibling_path
-    from compiler.project.stated_numbers import first_unit
-    from fretc.analysis.evidence import known as known_analysis
-    from fretc.audit.evidence.result_summaries import ResultSummaries
-    from fretc.audit.refusals import refusals
-    from fretc.audit.store.anywhere import required_source, source
-    from fretc.report.diagnostics import idle_waivers, stale_evidence
-    from fretc.report.model.assessments import assessments
-    from fretc.traceability.acceptances import warnings
-    from fretc.traceability.lock import read as read_lock
-    from fretc.traceability.lock import withdrawal_warnings, withdrawn_requirements
-    from fretc.traceability.waivers import read as read_waivers
-    from fretc.verification.reader import known as proven
-
-    units = first_unit(project.formalized)
-    diagnostics = [units] if units is not None else []
-    audited = (required_source if is_given("evidence") else source)(files.evidence)
-    results = audited if not isinstance(audited, Diagnostic) else None
-    if isinstance(audited, Diagnostic) and audited.is_error:
-        diagnostics.append(audited)
-    proofs = _value(proven(files.verification), diagnostics) or ()
-    analyzed = _value(known_analysis(files.analysis), diagnostics)
-    summaries = ResultSummaries.of(results) if results else None
-    path = sibling_path(files.requirements, "fretc.lock")
-    lock = _value(read_lock(path), diagnostics) if path is not None else None
-    waivers, waived = {}, sibling_path(files.requirements, "waivers.toml")
-    if waived is not None:
-        known, wrong = read_waivers(waived, [r.id for r in project.requirements], today())
-        waivers = {id: waiver for id, waiver in known.items() if waiver.covers(today())}
-        diagnostics.extend(wrong)
-    assessed = assessments(project, summaries, lock, waivers, proofs, analyzed)
-    statuses = [assessment.review_status for assessment in assessed]
-    if path is not None:
-        chains = [status.chain for status in statuses]
-        withdrawn = withdrawn_requirements(project.requirements, chains, lock)
-        diagnostics.extend(withdrawal_warnings(withdrawn, path))
-    diagnostics.extend(stale_evidence(assessed, summaries, files.evidence))
-    diagnostics.extend(idle_waivers(assessed))
-    diagnostics.extend(reason for _, why in refusals(project) for reason in why)
-    if analyze:
-        diagnostics.extend(_together(project.sound, analyzed))
-    diagnostics.extend(warnings(project, statuses, lock, results))
-    return diagnostics
-
-
-def _value(read: T | Diagnostic, diagnostics: list[Diagnostic]) -> T | None:
-    """The value; a diagnostic is added to `diagnostics` instead."""
-    if isinstance(read, Diagnostic):
-        diagnostics.append(read)
-        return None
-    return read
+    named = is_given("evidence")
+    files = SideFiles(requirements, evidence_path(evidence), verification, analysis, named)
+    together = _together if analyze else None
+    _finish(project_diagnostics(project, files, together), project.requirements, output_format)
 
 
 def _together(project: Project, known: AnalyzedSet | None) -> Iterator[Diagnostic]:

@@ -32,6 +32,7 @@ from fretish.diagnostics.rendering import visible
 
 if TYPE_CHECKING:
     from compiler.formalization.formalized import FormalizedRequirement
+    from compiler.project.fret_import import ImportResult
     from compiler.project.project import Project, Refused
     from compiler.targets.target import Target, TargetOptions
 
@@ -299,50 +300,60 @@ def fmt(files: tuple[str, ...], check: bool, output: str | None) -> None:
 
 
 @click.command("import")
-@click.argument("file", type=PATH, metavar="FILE")
+@click.argument("files", nargs=-1, required=True, type=PATH, metavar="FILE...")
 @output_option(default=REQUIREMENTS_FOLDER, show_default=True, help="Folder. `-` prints.")
 @click.option("--id-column", help="Name of the CSV column with the ids.")
 @click.option("--text-column", help="Name of the CSV column with the sentences or texts.")
 @click.option("--project-column", help="Name of the CSV column with the projects.")
 @click.option("--force", is_flag=True, help="Overwrite existing files.")
 def import_(
-    file: str,
+    files: tuple[str, ...],
     output: str,
     id_column: str | None,
     text_column: str | None,
     project_column: str | None,
     force: bool,
 ) -> None:
-    """Import requirements that FRET has exported, as JSON or CSV, or a TLSF specification.
+    """Import requirements that FRET has exported, as JSON or CSV; agents; or TLSF.
 
     The command writes a .fret file for each FRET project, and bindings.toml with FRET's
     variables. Formulas are made anew from the sentences. The columns of a CSV are separated by
-    comma, semicolon or tab, whichever splits its header into the most columns. Of a file that
-    ends with `.tlsf`, each formula becomes sentences of the same meaning.
+    comma, semicolon or tab, whichever splits its header into the most columns. Of an agent (.gwen)
+    and its properties (.psl), the command writes a .fret file for each, and their actions. Each
+    formula of a specification in TLSF (.tlsf) becomes sentences of the same meaning.
 
     Example: fretc import EXPORT.json -o requirements
     """
-    from compiler.files.text_files import read
-    from compiler.project.fret_import import read_export
-    from compiler.project.tlsf.importing import read_specification
-
-    source = or_fail(read(file))
     columns = {"id": id_column, "text": text_column, "project": project_column}
-    if file.lower().endswith(".tlsf"):
-        result = read_specification(source)
-    else:
-        result = read_export(source, {part: name for part, name in columns.items() if name})
+    result = _imported(files, {part: name for part, name in columns.items() if name})
     print_diagnostics(result.diagnostics)
     if has_errors(result.diagnostics):
         raise SystemExit(EXIT_USAGE)
-    files = {str(artifact.path): artifact.text for artifact in result.artifacts}
-    clashes = [path for path in files if (Path(output) / path).exists()]
+    texts = {str(artifact.path): artifact.text for artifact in result.artifacts}
+    clashes = [path for path in texts if (Path(output) / path).exists()]
     if clashes and output != "-" and not force:
         fail(diagnostic("output_exists", path=str(Path(output) / clashes[0])))
-    _deliver_all(files, output)
+    _deliver_all(texts, output)
     assumed = f" ({result.assumptions} of them assumptions)" if result.assumptions else ""
     counts = f"{result.requirements} requirements{assumed}, {result.variables} variables"
     print_status(f"imported {counts}")
+
+
+def _imported(files: Sequence[str], columns: Mapping[str, str]) -> ImportResult:
+    from compiler.files.text_files import read
+    from compiler.project.fret_import import read_export
+    from compiler.project.tlsf.importing import read_specification
+    from compiler.targets.ajpf.agent_import import SUFFIXES, read_agents
+
+    sources = [or_fail(read(file)) for file in files]
+    if all(source.name.endswith(SUFFIXES) for source in sources):
+        return read_agents(sources)
+    if len(sources) > 1:
+        raise click.UsageError("only agents and properties (.gwen, .psl) are imported together")
+    (source,) = sources
+    if source.name.lower().endswith(".tlsf"):
+        return read_specification(source)
+    return read_export(source, columns)
 
 
 def _deliver_all(files: Mapping[str, str], output: str) -> None:

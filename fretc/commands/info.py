@@ -24,9 +24,10 @@ from fretish.diagnostics.diagnostic import Diagnostic
 def info(paths: tuple[str, ...], whole: bool, output_format: str) -> None:
     """Show the topics, rates and damage of recorded runs.
 
-    LOG is an MCAP file, a ROS bag, a ULog, a table (.csv, .jsonl), a folder, a quoted pattern
-    ('runs/**/*.mcap'), a URL, or `-` for standard input. For each topic the command prints
-    type, count, rate, longest gap, and the fields that a signal in bindings.toml can read.
+    LOG is an MCAP file, a ROS bag, a ULog, a DataFlash log, a table (.csv, .jsonl), a folder, a
+    quoted pattern ('runs/**/*.mcap'), a URL, or `-` for standard input. For each topic the
+    command prints type, count, rate, longest gap, and the fields that a signal in bindings.toml
+    can read.
 
     Exit status: 0 no damage, 3 a log is damaged, 2 a log cannot be read.
 

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from fretc.audit.plan import Plan
 
 
-AUDIT_TABLES = ("map", "run")
+AUDIT_TABLES = ("map", "run", "agent")
 """Shared tables of the bindings that commands which evaluate logs read."""
 
 

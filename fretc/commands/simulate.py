@@ -105,11 +105,11 @@ def simulate(
 
     Example: fretc simulate obstacle-moved --seed 7 -o mission.mcap
     """
-    from simulation.world.scenario import NOMINAL, load, names
+    from simulation.world.scenario import NOMINAL, load, names, without_agent
 
     if listing:
         for name in names():
-            click.echo(f"{name:<16} {load(name).title}")
+            click.echo(f"{name:<22} {load(name).title}")
         return
     require_simulation()
     if campaign is not None:
@@ -118,7 +118,7 @@ def simulate(
                 "--campaign cannot be combined with --png, --gif, --agent, --duration or --encoding"
             )
         _count(
-            [_scenario(n) for n in scenarios or names()],
+            [_scenario(n) for n in scenarios or without_agent()],
             seed,
             campaign,
             jobs,
@@ -138,6 +138,7 @@ def simulate(
 def _agent(scenario: Scenario, wanted: bool) -> Iterator[Agent | None]:
     """The running agent, if it is wanted."""
     if not wanted:
+        _without_agent(scenario)
         yield None
         return
     from fretc.campaigns.agent import AgentError, agent
@@ -146,12 +147,18 @@ def _agent(scenario: Scenario, wanted: bool) -> Iterator[Agent | None]:
     types = {topic.name: topic.type for topic in TOPICS}
     with ExitStack() as stack:
         try:
-            running = stack.enter_context(agent(scenario.safety.threshold, types))
+            running = stack.enter_context(agent(scenario, types))
         except AgentError as error:
             fail(diagnostic("agent_not_started", why=str(error)))
         except ModuleNotFoundError as error:
             fail(missing_extra("the agent needs", (str(error.name),), "live"))
         yield running
+
+
+def _without_agent(scenario: Scenario) -> None:
+    """Refuse a fault of the agent in a mission that has none."""
+    if scenario.agent is not None:
+        raise click.UsageError(f"the scenario {scenario.name} needs --agent")
 
 
 def require_simulation() -> None:
@@ -303,6 +310,8 @@ def _count(
     from fretc.campaigns.campaign import campaign, table
 
     called = [scenario.name for scenario in scenarios]
+    for scenario in scenarios:
+        _without_agent(scenario)
     if len(set(called)) < len(called):
         raise click.UsageError("two scenarios have the same name")
     folder = Path(out) if out is not None else None

@@ -1,4 +1,4 @@
-"""The container formats of logs: MCAP, bags, ULog, Arrow by first bytes, tables by suffix."""
+"""The container formats of logs, told apart by their first bytes, and tables by their suffix."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from fretc.logs.mcap.damage import Damage
 from fretc.logs.mcap.messages import Sink
 from fretc.logs.signals.integrity import Integrity
 from fretc.logs.signals.samples import Gap
-from fretc.logs.storage import bags, ulog
+from fretc.logs.storage import bags, dataflash, ulog
 from fretc.logs.storage.bags import NOWHERE
 from fretc.logs.storage.inputs import OpenLog
 from fretc.logs.storage.log_names import TEXT_TABLES
@@ -118,6 +118,7 @@ _WHOLE: Mapping[bytes, Callable[[OpenLog, Sink, Span], FileContents | Diagnostic
     bags.BAG: partial(_bag, bags.BAG),
     bags.DB3: partial(_bag, bags.DB3),
     ulog.MAGIC: ulog.read,
+    dataflash.MAGIC: dataflash.read,
     PARQUET: tables.read_arrow,
     ARROW: tables.read_arrow,
 }

@@ -31,6 +31,7 @@ from fretc.logs.storage.inputs import OpenLog, opened
 from fretc.logs.storage.log_names import name_of
 from fretc.logs.storage.parts import FileContents, RenumberingSink, around, widened
 from fretc.logs.storage.splits import ACTIVE, run_name, split
+from fretc.logs.tables.episodes import episode_of
 from fretc.logs.topic_columns import Columns
 from fretc.logs.topics import clocks, never_stated, topic
 from fretc.logs.vocabulary import MessageTexts, Words
@@ -185,9 +186,13 @@ def _opened(
             return _tried(run, span, new, integrity, vocabulary)
         if not os.path.lexists(path) and (parts := split(path)) is not None:
             return _tried(partial(_folder, parts, asked), span, new, integrity, vocabulary)
-        with opened(path, whole=integrity is not Integrity.INDEX) as log:
+        episode = episode_of(path)
+        file = path if episode is None else episode.file
+        with opened(file, whole=integrity is not Integrity.INDEX) as log:
             if isinstance(log, Diagnostic):
                 return log
+            if episode is not None:
+                log = replace(log, episode=episode.number)
             found = _tried(partial(_file, path, log, asked), span, new, integrity, vocabulary)
             if not (isinstance(found, Diagnostic) and log.changed() and containers.only_grows(log)):
                 return found
@@ -394,6 +399,7 @@ def _recording(
             *log_diagnostics.few(damages, place),
             *run.notes,
             *watch.findings,
+            *columns.reports.findings(place),
         ),
         intact=not run.damages and not watch.lost,
         checked=run.checked,
@@ -401,4 +407,5 @@ def _recording(
         described=run.described,
         origin=watch.origin,
         late=columns.late(),
+        agents=columns.reports.traces(),
     )

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fretc.logs import log_diagnostics
+from fretc.logs.agents.reports import AgentReports
 from fretc.logs.extraction import Extract, Extraction
 from fretc.logs.mcap.container import ChannelDefinition
 from fretc.logs.mcap.damage import LATEST
@@ -153,6 +154,7 @@ class Columns:
         """The first stream of each topic."""
         self.nearest: dict[str, float] = {}
         self.clock = declarations.clock
+        self.reports = AgentReports(declarations.agent_trace, declarations.clock)
         self._source = declarations.source
         self._wanted = wanted
         topics = {signal.path.topic for signal in wanted}
@@ -186,6 +188,8 @@ class Columns:
     ) -> None:
         """Add one message; messages of bound topics wait for others of their stream."""
         column = self.topics[stream.channel.topic]
+        if column.name == self.reports.topic:
+            self.reports.take(stream, log_time, publish_time, bytes(payload))
         if not column.bound:
             column.logs.append(log_time)
             return
@@ -196,6 +200,10 @@ class Columns:
         """Add messages of one topic, in their order."""
         column = self.topics[stream.channel.topic]
         logs = messages.logs.astype(np.int64)
+        if column.name == self.reports.topic:
+            times = zip(logs.tolist(), messages.publishes.tolist(), strict=True)
+            for payload, (log, publish) in zip(messages.payloads.copies(), times, strict=True):
+                self.reports.take(stream, log, publish, payload)
         if not column.bound:
             column.logs.frombytes(logs.tobytes())
             return
@@ -207,8 +215,8 @@ class Columns:
         self._wait(column, stream, logs.tolist(), messages.publishes.tolist(), payloads)
 
     def wants(self, topic: str) -> bool:
-        """Whether the topic is bound."""
-        return topic in self._bound
+        """Whether the topic is bound, or has the reports of agents."""
+        return topic in self._bound or topic == self.reports.topic
 
     def count(self, stream: ChannelDefinition, count: int) -> None:
         """Count messages of a topic that is not bound."""

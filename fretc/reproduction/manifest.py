@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 
 from compiler.files.text_files import file_sha256
 from compiler.files.text_files import read as read_text
@@ -15,6 +15,7 @@ from fretc.audit.evidence.schema import EvidenceDocument
 from fretc.logs.storage.folders import METADATA, Folder, folder, is_folder
 from fretc.logs.storage.log_names import is_url, name_of
 from fretc.logs.storage.splits import split
+from fretc.logs.tables.episodes import episode_of, runs_of
 from fretc.reproduction.outcome import Recheck, differs, unknown
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
@@ -109,13 +110,14 @@ def matches(
         manifest: the required logs.
         places: run → present path of its log.
     """
-    unmatched = dict(manifest.logs)
     sha_of = {result.run: result.hashes.get("log") for result in document.results}
     parts = {run: _parts(run, places.get(run)) for run in sha_of}
     named = {
-        run: {path: unmatched.pop(path) for path in parts[run] if path in unmatched}
+        run: {path: manifest.logs[path] for path in parts[run] if path in manifest.logs}
         for run in sha_of
     }
+    matched = {path for listed in named.values() for path in listed}
+    unmatched = {path: sha for path, sha in manifest.logs.items() if path not in matched}
     for run, listed in named.items():
         same = next((path for path, sha in unmatched.items() if sha == sha_of[run]), None)
         if not listed and same is not None:
@@ -125,7 +127,20 @@ def matches(
         for run in sha_of
     ]
     why = "the manifest names it, but the evidence has no result for it"
-    return (*runs, *(Match(path, (differs(path, "", why),)) for path in unmatched))
+    absent = [*unmatched, *_absent_episodes(sha_of, places)]
+    return (*runs, *(Match(path, (differs(path, "", why),)) for path in absent))
+
+
+def _absent_episodes(runs: Collection[str], places: Mapping[str, str]) -> Iterator[str]:
+    """The runs of a table with several, of which the evidence has only some."""
+    files: dict[str, str] = {}
+    for run in runs:
+        episode = episode_of(places.get(run, ""))
+        if episode is not None:
+            files[episode.file] = run.rpartition("#")[0]
+    for file, name in files.items():
+        numbers = (path.removeprefix(file) for path in runs_of(file))
+        yield from (f"{name}{number}" for number in numbers if f"{name}{number}" not in runs)
 
 
 def _parts(run: str, location: str | None) -> Mapping[str, str | None]:
@@ -141,6 +156,9 @@ def _parts(run: str, location: str | None) -> Mapping[str, str | None]:
         return {
             _normal(os.path.join(names, name_of(n))): os.path.join(about.path, n) for n in files
         }
+    episode = episode_of(location or "")
+    if episode is not None:
+        return {_normal(run.rpartition("#")[0]): episode.file}
     return {_normal(run): location}
 
 

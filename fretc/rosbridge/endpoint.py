@@ -11,7 +11,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 from fretc.rosbridge.encoding import as_cbor, as_json
-from fretc.rosbridge.session import Graph, Session
+from fretc.rosbridge.session import NO_SERVICES, Graph, Service, Session
 from fretc.rosbridge.subscriptions import fragments
 
 if TYPE_CHECKING:
@@ -34,6 +34,7 @@ class Endpoint:
         receive: Callable[[str, str, Any], None],
         host: str = "127.0.0.1",
         port: int = 0,
+        services: Mapping[str, Service] = NO_SERVICES,
     ) -> None:
         """Start to listen.
 
@@ -43,12 +44,13 @@ class Endpoint:
                 ValueError says that the message does not conform to the type.
             host: the address to listen on.
             port: the port; 0: any free one.
+            services: name → what answers a call, in the endpoint's thread.
 
         Raises:
             OSError: the address cannot be used.
             ModuleNotFoundError: websockets is not installed.
         """
-        self._graph = Graph(types, receive)
+        self._graph = Graph(types, receive, services)
         self._host, self._port = host, port
         self._clients: set[_Client] = set()
         self._failure: BaseException | None = None
@@ -65,6 +67,11 @@ class Endpoint:
     def url(self) -> str:
         """The address for clients."""
         return f"ws://{self._host}:{self._port}"
+
+    @property
+    def port(self) -> int:
+        """The port on which it listens, or has listened."""
+        return self._port
 
     @property
     def clients(self) -> int:

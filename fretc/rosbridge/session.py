@@ -1,13 +1,15 @@
 """The operations of one client of the endpoint.
 
-Deviations from rosbridge: there are no services and no actions; every call fails. PNG compression
-and `cbor-raw` are refused. Without a check of types, each published message is taken as it is.
+Deviations from rosbridge: there are no actions, clients advertise no services, and calls are
+answered one after the other, without a check of their type. PNG compression and `cbor-raw` are
+refused. Without a check of types, each published message is taken as it is.
 """
 
 from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
+from types import MappingProxyType
 from typing import Any
 
 from fretc.rosbridge.subscriptions import Subscription, TopicQueue
@@ -18,6 +20,12 @@ MOST_SUBSCRIPTIONS = 16
 """Subscriptions of a client to one topic."""
 _LEVELS = ("none", "error", "warning", "info")
 _LONGEST = 256
+
+
+Service = Callable[[Mapping[str, Any]], "Mapping[str, Any] | None"]
+"""The request of a call → the fields of its answer; None: it is never answered. A ValueError says
+why the call fails."""
+NO_SERVICES: Mapping[str, Service] = MappingProxyType({})
 
 
 class RefusedError(Exception):
@@ -31,11 +39,20 @@ class RefusedError(Exception):
 class Graph:
     """The topics of the endpoint with their types."""
 
-    def __init__(self, types: Mapping[str, str], publish: Callable[[str, str, Any], None]) -> None:
-        """`types`: of the topics that always exist.
+    def __init__(
+        self,
+        types: Mapping[str, str],
+        publish: Callable[[str, str, Any], None],
+        services: Mapping[str, Service] = NO_SERVICES,
+    ) -> None:
+        """The topics before any client.
 
-        `publish` takes topic, type and message of a client.
+        Args:
+            types: of the topics that always exist.
+            publish: takes topic, type and message of a client.
+            services: name → what answers.
         """
+        self.services = services
         self._own = frozenset(types)
         self.types = dict(types)
         self.publish = publish
@@ -170,9 +187,22 @@ class Session:
         service = operation.get("service")
         if not isinstance(service, str):
             raise RefusedError("call_service needs a service")
-        answer = {"op": "service_response", "service": service, "result": False}
-        answer["values"] = f"service {_shortened(service)} does not exist"
-        self._reply(answer if "id" not in operation else {**answer, "id": operation["id"]})
+        answer: dict[str, Any] = {"op": "service_response", "service": service}
+        if "id" in operation:
+            answer["id"] = operation["id"]
+        perform = self._graph.services.get(service if service.startswith("/") else f"/{service}")
+        arguments = operation.get("args", {})
+        try:
+            if perform is None:
+                raise ValueError(f"service {_shortened(service)} does not exist")
+            if not isinstance(arguments, dict):
+                raise ValueError("the arguments of a call are an object")
+            values = perform(arguments)
+        except ValueError as error:
+            self._reply({**answer, "values": str(error), "result": False})
+            return
+        if values is not None:
+            self._reply({**answer, "values": dict(values), "result": True})
 
     def _set_level(self, operation: Mapping[str, Any]) -> None:
         level = operation.get("level")

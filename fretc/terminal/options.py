@@ -11,6 +11,7 @@ import click
 from click.shell_completion import CompletionItem
 
 from fretc.terminal.output import EVIDENCE, REQUIREMENTS_FOLDER, STORE, fail
+from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 
 T = TypeVar("T")
@@ -119,8 +120,16 @@ def evidence_path(named: str | None) -> str:
     """Path of the evidence: the user's, or else the existing default file or store."""
     if named is not None:
         return named
+    path = default_evidence()
+    if isinstance(path, Diagnostic):
+        fail(path)
+    return path
+
+
+def default_evidence() -> str | Diagnostic:
+    """The existing default file or store; a diagnostic if there are both."""
     if os.path.lexists(EVIDENCE) and os.path.lexists(STORE):
-        fail(diagnostic("two_evidences", evidence=EVIDENCE, store=STORE))
+        return diagnostic("two_evidences", evidence=EVIDENCE, store=STORE)
     return STORE if os.path.lexists(STORE) else EVIDENCE
 
 

@@ -229,7 +229,10 @@ class DistinguishingRun:
 
 
 def difference(
-    requirement: FormalizedRequirement, other: FormalizedRequirement, seconds: float
+    requirement: FormalizedRequirement,
+    other: FormalizedRequirement,
+    seconds: float,
+    beside: Sequence[FormalizedRequirement] = (),
 ) -> DistinguishingRun | Absence:
     """A run that distinguishes two sentences, or proof that they agree on all finite runs.
 
@@ -237,17 +240,18 @@ def difference(
         requirement: a sentence.
         other: another sentence over the same bindings.
         seconds: CPU seconds.
+        beside: further sentences whose atoms the run has, too.
     """
-    both = [requirement, other]
+    every = [requirement, other, *beside]
     try:
-        bench = RequirementModel(requirement, (), [other], Budget(seconds))
+        bench = RequirementModel(requirement, (), every[1:], Budget(seconds))
         letters = bench.difference(other, ())
     except (UnsupportedError, OutOfTimeError) as error:
         return Absence(why=str(error))
     if letters is None:
         return Absence()
-    atoms = _atoms(both)
-    signals = {name: read for name, read in _read(both).items() if name not in read}
+    atoms = _atoms(every)
+    signals = {name: read for name, read in _read(every).items() if name not in read}
     made = word(letters, bench.alphabet, Naming(atoms, atoms, signals, {}))
     assert is_killed(judged(requirement, made), judged(other, made), made.ticks)
     return DistinguishingRun(made, bench.uncertainty)

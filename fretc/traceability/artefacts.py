@@ -15,6 +15,7 @@ from compiler.targets.target import Target, TargetOptions
 from fretish.bindings.declarations import Declarations
 from fretish.classes.frozen import dataclass
 from fretish.documents import RequirementEntry
+from fretish.reading.memory import remembered
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +31,7 @@ class Product:
 _ALWAYS = ("monitor", "ltl", "ajpf", "json")
 
 
+@remembered
 def products(requirement: FormalizedRequirement | None) -> tuple[Product, ...]:
     """A product for each file of the requirement, and for each target that refuses it.
 

@@ -25,6 +25,7 @@ from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Source, Span
 from fretish.expressions import names
 from fretish.printer import expression as printed
+from fretish.reading.memory import remembered
 
 _COMMAND = "command"
 _METHODS = ("audit", *METHODS, *TARGETS)
@@ -89,16 +90,19 @@ def _place(requirement: FormalizedRequirement, name: str) -> Span:
     return next(places, None) or requirement.entry.wording
 
 
-def _never_so(requirement: FormalizedRequirement) -> Iterator[Diagnostic]:
+@remembered
+def _never_so(requirement: FormalizedRequirement) -> tuple[Diagnostic, ...]:
     """F210 for each part of the sentence that no numbers make true, or none false."""
-    for part, value in constant_parts(requirement):
-        yield diagnostic(
+    return tuple(
+        diagnostic(
             "never_so",
             next((name.span for name in names(part)), None) or requirement.entry.wording,
             part=printed(part),
             requirement=requirement.id,
             when="always" if value else "never",
         )
+        for part, value in constant_parts(requirement)
+    )
 
 
 # Assumptions -----------------------------------------------------------------------------------

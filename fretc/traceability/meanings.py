@@ -44,7 +44,7 @@ from fretc.traceability.texts import (
     header_of,
 )
 from fretish.bindings import canonical
-from fretish.bindings.declarations import Declarations
+from fretish.bindings.declarations import ComputedSignal, Declarations
 from fretish.bindings.tables.reader import read_bindings
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.source import Source
@@ -244,9 +244,13 @@ def _proposition(name: str, declarations: Declarations | None) -> Mapping[str, A
 
 
 def _signal(name: str, declarations: Declarations | None) -> Mapping[str, Any]:
-    known = declarations.signals.get(name) if declarations else None
+    known = declarations.measured.get(name) if declarations else None
     if known is None:
         return {}
+    if isinstance(known, ComputedSignal):
+        unit = canonical.unit_fields(known.unit)
+        own = {"agg": str(known.aggregate), "role": str(known.role)}
+        return {"value": canonical.expression(known.value), "unit": unit, **own}
     meanings = canonical.signal_fields(known)
     outline = meanings.pop("outline") or (None, None)
     own = {"agg": str(known.aggregate), "role": str(known.role)}

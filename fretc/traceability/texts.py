@@ -157,11 +157,12 @@ def bindings(
     known = requirement.declarations or project
     named = tuple(dict.fromkeys((*requirement.watched, *requirement.propositions)))
     own = [name for name in named if name in known.propositions]
-    read = {signal for name in own for signal in known.propositions[name].signals}
+    bound = [known.propositions[name] for name in own]
+    read = {signal for each in bound for signal in (*each.signals, *each.calculations)}
     names = {*requirement.variables, *requirement.definitions}
     return BindingsTexts(
         clock,
-        _chosen(written, "signal", read & known.signals.keys()),
+        _chosen(written, "signal", read & known.measured.keys()),
         _chosen(written, "proposition", own),
         _chosen(written, "variable", names | {*named}),
     )

@@ -24,7 +24,7 @@ from fretish.reading.toml_text import read as read_tables
 from monitors import kernel
 
 NAME = "waivers.toml"
-_FIELDS = ("verdict", "reason", "by", "role", "granted", "expires")
+FIELDS = ("verdict", "reason", "by", "role", "granted", "expires")
 UNFORMALIZED, NOT_EXERCISED = "unformalized", "not exercised"
 VERDICTS = (
     kernel.VIOLATED,
@@ -58,7 +58,7 @@ class Waiver:
     @property
     def seal(self) -> str:
         """SHA-256 of the whole waiver, which a signature covers."""
-        return digest([self.requirement, *(getattr(self, name) for name in _FIELDS)])
+        return digest([self.requirement, *(getattr(self, name) for name in FIELDS)])
 
     def covers(self, day: str) -> bool:
         """Whether the waiver is valid on that day."""
@@ -105,9 +105,9 @@ def _mistakes(
         fix = did_you_mean(id, ids, "name a requirement of the project")
         yield _wrong(tables, f"{id} is waived, but is not among the requirements", fix, id)
     for key in fields:
-        if key not in _FIELDS:
-            yield unknown_key(Code.BAD_WAIVER, key, _FIELDS, tables.place(id, key), f"[{id}]")
-    for name in _FIELDS:
+        if key not in FIELDS:
+            yield unknown_key(Code.BAD_WAIVER, key, FIELDS, tables.place(id, key), f"[{id}]")
+    for name in FIELDS:
         value = fields.get(name)
         if name == "verdict" and value not in VERDICTS:
             yield _no_verdict(tables, id, value)

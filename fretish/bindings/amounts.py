@@ -14,7 +14,7 @@ from math import copysign, floor, inf, isclose, isfinite, isnan, log10
 from sys import float_info
 from typing import TypeVar
 
-from fretish.bindings.declarations import Signal
+from fretish.bindings.declarations import MeasuredSignal
 from fretish.units import base_name
 
 _DIGITS = 3
@@ -169,7 +169,9 @@ def instant(ns: int | None) -> str:
 # Units ----------------------------------------------------------------------------------------
 
 
-def declared_unit(signal: str, base: str, declared: Mapping[str, Signal]) -> tuple[str, Fraction]:
+def declared_unit(
+    signal: str, base: str, declared: Mapping[str, MeasuredSignal]
+) -> tuple[str, Fraction]:
     """The unit in which a signal is displayed, and its size in base units.
 
     Args:
@@ -183,7 +185,9 @@ def declared_unit(signal: str, base: str, declared: Mapping[str, Signal]) -> tup
     return "" if declaration.unit_name == "1" else declaration.unit_name, declaration.unit.factor
 
 
-def shared_unit(term: str, base: str, declared: Mapping[str, Signal]) -> tuple[str, Fraction]:
+def shared_unit(
+    term: str, base: str, declared: Mapping[str, MeasuredSignal]
+) -> tuple[str, Fraction]:
     """The unit in which a term is displayed: the common unit of its signals, else the base unit.
 
     Args:

@@ -81,7 +81,7 @@ def signal_fields(signal: Signal) -> dict[str, Any]:
     invalid = signal.invalid
     meaning = {
         "path": str(signal.path),
-        "unit": [list(signal.unit.dimension), str(signal.unit.factor)],
+        "unit": unit_fields(signal.unit),
         "type": short_type(signal.type) if signal.type else None,
         "reduce": str(signal.reduce) if signal.reduce else None,
         "valid": expression(signal.valid, plain=False) if signal.valid else None,
@@ -98,6 +98,11 @@ def signal_fields(signal: Signal) -> dict[str, Any]:
         "outline": [signal.footprint, signal.sensor] if outline else None,
     }
     return meaning | {"values": _values(signal)} if signal.values else meaning
+
+
+def unit_fields(unit: units.Unit) -> Any:
+    """The unit; another name of the same unit is the same."""
+    return [list(unit.dimension), str(unit.factor)]
 
 
 def _values(signal: Signal) -> Any:
@@ -129,6 +134,8 @@ def expression(tree: e.Expression, *, plain: bool = True) -> Any:
             return _quantity(digits, name, plain=plain)
         case e.Word(text):
             return ["word", text]
+        case e.Calculation(_, value):
+            return expression(value, plain=plain)
         case e.Arithmetic(op, _, _) | e.Comparison(op, _, _):
             kind = [type(tree).__name__, op]
         case e.Call(name, _):

@@ -12,7 +12,7 @@ from fractions import Fraction
 
 from fretish import expressions as e
 from fretish.bindings import expressions as binding
-from fretish.bindings.declarations import Signal
+from fretish.bindings.declarations import MeasuredSignal
 from fretish.bindings.expressions import MOST_TICKS_BACK, is_base, ticks_back
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic, DiagnosticError
@@ -60,7 +60,7 @@ class _NumberUnit:
 _PLAIN = _NumberUnit("", ONE, measured=False)
 
 
-def is_measured(expression: e.Expression, signals: Mapping[str, Signal]) -> bool:
+def is_measured(expression: e.Expression, signals: Mapping[str, MeasuredSignal]) -> bool:
     """Whether every name is a signal, and bindings support every operation in the expression."""
     parts = list(e.parts(expression))
     names = {part.id for part in parts if isinstance(part, e.Name)}
@@ -96,7 +96,7 @@ def _exponent(written: e.Expression) -> int | None:
 
 
 def in_own_units(
-    comparison: e.Comparison, signals: Mapping[str, Signal], span: Span
+    comparison: e.Comparison, signals: Mapping[str, MeasuredSignal], span: Span
 ) -> e.Comparison | Diagnostic:
     """The comparison with each quantity (`20 %`) as a bare number in the unit of its signal.
 
@@ -112,7 +112,7 @@ def in_own_units(
 
 
 def bound(
-    comparison: e.Comparison, signals: Mapping[str, Signal], span: Span
+    comparison: e.Comparison, signals: Mapping[str, MeasuredSignal], span: Span
 ) -> e.Comparison | Diagnostic:
     """The comparison as an expression of bindings, in which each number has its unit."""
     rewritten = _ComparisonRewriter(signals, span, bare=False).comparison(comparison)
@@ -123,7 +123,7 @@ def bound(
     return dimension if isinstance(dimension, Diagnostic) else rewritten
 
 
-def is_mixed(comparison: e.Comparison, signals: Mapping[str, Signal], span: Span) -> bool:
+def is_mixed(comparison: e.Comparison, signals: Mapping[str, MeasuredSignal], span: Span) -> bool:
     """Whether the comparison combines signals in different units of one dimension."""
     return is_measured(comparison, signals) and _ComparisonRewriter(
         signals, span, bare=True
@@ -133,7 +133,7 @@ def is_mixed(comparison: e.Comparison, signals: Mapping[str, Signal], span: Span
 class _ComparisonRewriter:
     """Rewrites the numbers of a comparison into the units that their operands require."""
 
-    def __init__(self, signals: Mapping[str, Signal], span: Span, *, bare: bool) -> None:
+    def __init__(self, signals: Mapping[str, MeasuredSignal], span: Span, *, bare: bool) -> None:
         self._signals = signals
         self._place = span
         self._bare = bare

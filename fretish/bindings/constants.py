@@ -8,6 +8,7 @@ from functools import lru_cache
 from fretish import expressions as e
 from fretish import units
 from fretish.bindings import expressions as binding
+from fretish.bindings.functions import ROUNDED
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source
 
@@ -64,7 +65,10 @@ def quantity(digits: str, name: str, read_in: units.Unit) -> Fraction:
 
 
 def number(expression: e.Expression) -> Fraction | None:
-    """The value of a constant expression in base units; None if it divides by zero."""
+    """The value of a constant expression in base units.
+
+    None: it divides by zero, or calls a function whose result is rounded.
+    """
     match expression:
         case e.Number(digits):
             return Fraction(digits)
@@ -78,6 +82,8 @@ def number(expression: e.Expression) -> Fraction | None:
         case e.Arithmetic(op, left, right):
             first, second = number(left), number(right)
             return None if first is None or second is None else computed(op, first, second)
+        case e.Call(name) if name in ROUNDED:
+            return None
         case e.Call(name, args, _):
             values = [value for value in map(number, args) if value is not None]
             return called(name, values) if len(values) == len(args) else None

@@ -18,7 +18,7 @@ from fretish.clock import Clock
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source, Span
 from fretish.documents import RequirementEntry
-from fretish.expressions import Expression, names
+from fretish.expressions import Calculation, Expression, names, parts
 from fretish.reading.caching import cache_by_identity
 from fretish.units import Unit
 
@@ -149,6 +149,42 @@ class Signal:
         return Fraction(1) if self.reduce is Reduce.OUTLINE else self.unit.factor
 
 
+@dataclass(frozen=True, slots=True)
+class ComputedSignal:
+    """A number over time, computed from the signals' values at the same instant.
+
+    Its value is unknown if one of them is. `aggregate` applies to comparisons in sentences.
+    """
+
+    name: str
+    value: Expression
+    """Over recorded signals, and other computed ones as `Calculation`."""
+    unit: Unit
+    """The unit of bare numbers in sentences, and of numbers in reports."""
+    unit_name: str
+    text: str
+    """The value as written."""
+    is_rounded: bool = False
+    """As in `Calculation`."""
+    role: Role | None = None
+    aggregate: Aggregate = Aggregate.LAST
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def values(self) -> tuple[str, ...]:
+        """No words: its values are numbers."""
+        return ()
+
+    @property
+    def scale(self) -> Fraction:
+        """Factor from its unit to base units."""
+        return self.unit.factor
+
+
+MeasuredSignal = Signal | ComputedSignal
+"""A signal that sentences may compare."""
+
+
 class Modality(StrEnum):
     """How an agent relates to a proposition: a modality of AJPF's property language."""
 
@@ -186,8 +222,19 @@ class Proposition:
 
     @property
     def signals(self) -> tuple[str, ...]:
-        """The names of the signals in the expression, in order of first use."""
+        """The names of the recorded signals in the expression, in order of first use."""
         return _named(self.expression)
+
+    @property
+    def calculations(self) -> tuple[str, ...]:
+        """The names of the computed signals in the expression, and in their values."""
+        return _calculations(self.expression)
+
+
+@cache_by_identity
+def _calculations(expression: Expression) -> tuple[str, ...]:
+    found = (part.name for part in parts(expression) if isinstance(part, Calculation))
+    return tuple(dict.fromkeys(found))
 
 
 @cache_by_identity
@@ -321,12 +368,27 @@ class ActionBinding:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
+@dataclass(frozen=True, slots=True)
+class ServiceCall:
+    """`[call.NAME]`: which service an action of an agent calls."""
+
+    action: str
+    service: str
+    type: str
+    """Such as `std_srvs/Trigger`."""
+    request: str
+    """In JSON."""
+    limit: int
+    """Nanoseconds for the answer."""
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
 Part = tuple[str, str]
 """`("signal", "vx")`, `("proposition", "near")`, `("clock", "")`, `("map", "")`."""
-SHARED = ("interceptor", "assume", "environment", "map", "run", "action")
+SHARED = ("interceptor", "assume", "environment", "map", "run", "action", "call", "agent")
 """Tables that belong to no single requirement: `[interceptor]`, `[assume]`,
-`[[assume.requirement]]`, `[map]`, `[run.label]` and `[action.NAME]`. Only some commands read
-them."""
+`[[assume.requirement]]`, `[map]`, `[run.label]`, `[action.NAME]`, `[call.NAME]` and `[agent]`. Only
+some commands read them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -364,11 +426,23 @@ class Declarations:
     verdict on a log depends on them."""
     actions: Mapping[str, ActionBinding] = field(default_factory=dict)
     """`[action.NAME]`: name of an agent's action → what it publishes."""
+    calls: Mapping[str, ServiceCall] = field(default_factory=dict)
+    """`[call.NAME]`: name of an agent's action → the service that it calls."""
+    agent_trace: str | None = None
+    """`[agent]`: the topic on which agents report beliefs, goals and actions; no verdict depends on
+    it."""
+    computed: Mapping[str, ComputedSignal] = field(default_factory=dict)
+    """The computed signals; `signals` has the recorded ones."""
+
+    @property
+    def measured(self) -> Mapping[str, MeasuredSignal]:
+        """All signals that sentences may compare."""
+        return {**self.signals, **self.computed} if self.computed else self.signals
 
     @property
     def signal_names(self) -> tuple[str, ...]:
         """The names of all declared signals, with or without errors."""
-        return (*self.signals, *(name for kind, name in self.mistakes if kind == "signal"))
+        return (*self.measured, *(name for kind, name in self.mistakes if kind == "signal"))
 
     @property
     def definitions(self) -> Mapping[str, Expression]:
@@ -392,13 +466,15 @@ class Declarations:
         """The declarations without the signals that none of these propositions reads."""
         bound = [self.propositions[name] for name in propositions if name in self.propositions]
         read = {signal for proposition in bound for signal in proposition.signals}
-        parts = {("clock", "")}
-        parts |= {("signal", name) for name in read}
-        parts |= {("proposition", proposition.name) for proposition in bound}
+        computed = {name for proposition in bound for name in proposition.calculations}
+        kept = {("clock", "")}
+        kept |= {("signal", name) for name in read}
+        kept |= {("proposition", proposition.name) for proposition in bound}
         return replace(
             self,
             signals={name: signal for name, signal in self.signals.items() if name in read},
-            defaults=tuple(default for default in self.defaults if default.part in parts),
+            defaults=tuple(default for default in self.defaults if default.part in kept),
+            computed={name: each for name, each in self.computed.items() if name in computed},
         )
 
     @property

@@ -30,14 +30,17 @@ def find_cycle(definitions: Definitions) -> tuple[str, ...]:
     """The names of a cyclic definition, the first repeated at the end; empty if there is none."""
     done: set[str] = set()
     for name in definitions:
-        path = _cycle_from(name, definitions, done)
+        path = cycle_from(name, definitions, done)
         if path:
             return path
     return ()
 
 
-def _cycle_from(start: str, definitions: Definitions, done: set[str]) -> tuple[str, ...]:
-    """A cycle that `start` leads to; adds to `done` the names that lead to none."""
+def cycle_from(
+    start: str, definitions: Definitions, done: set[str] | None = None
+) -> tuple[str, ...]:
+    """A cycle that `start` leads to, as in `find_cycle`; adds to `done` the names without one."""
+    done = set() if done is None else done
     path = {start: None}
     waiting = [_dependencies(start, definitions)]
     while waiting:

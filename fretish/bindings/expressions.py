@@ -1,7 +1,8 @@
 """Parse the expressions of bindings, and compute their dimensions.
 
 They are a small language, not Python: signals, numbers with units, words in quotes,
-comparisons, `and`/`or`/`not`, `abs`, `min`, `max`, `pre` and `... for 200 ms`.
+comparisons, `and`/`or`/`not`, `abs`, `min`, `max`, `pre` and `... for 200 ms`. The values of
+computed signals also call the functions of `fretish.bindings.functions`.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from functools import cache
 from typing import Any, cast
 
 from fretish import expressions as e
+from fretish.bindings.functions import OF_VALUES, Function
 from fretish.diagnostics.diagnostic import Code, Diagnostic, DiagnosticError, did_you_mean
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
@@ -54,6 +56,11 @@ def parse(text: Span) -> e.Expression | Diagnostic:
 
 class _ExpressionError(DiagnosticError):
     """Carries a diagnostic out of the callbacks of the parser."""
+
+
+def words(text: str) -> tuple[Token, ...]:
+    """The words of an expression, right or wrong; what is no word is left out."""
+    return tuple(_parser().known_tokens(text))
 
 
 @cache
@@ -185,6 +192,10 @@ def dimension(
         case e.Comparison(_, left, right):
             both = _numbers([left, right], kinds, place)
             return both if isinstance(both, Diagnostic) else None
+        case e.Calculation(_, value):
+            return dimension(value, kinds, place)
+        case e.Call(name, args, span) if name in OF_VALUES:
+            return _of_function(OF_VALUES[name], expression, kinds, place)
         case e.Call(name, args, span):
             if name not in FUNCTIONS:
                 return _unknown_function(name, span or place)
@@ -228,12 +239,51 @@ def _numbers(
             return _kind_error("a number is needed, and this is a truth value", arg, span)
         if common is not None and kind != common:
             return _mismatch(
-                f"{_describe(common)} cannot be compared with or added to {_describe(kind)}",
+                f"{in_words(common)} cannot be compared with or added to {in_words(kind)}",
                 arg,
                 span,
             )
         common = kind
     return common or DIMENSIONLESS
+
+
+def _of_function(
+    function: Function, call: e.Call, kinds: Mapping[str, Kind], place: Span
+) -> Kind | Diagnostic:
+    """The dimension of the result of a function, whose arguments have the right ones."""
+    least, most = function.least, function.most
+    if len(call.args) < least or (most is not None and len(call.args) > most):
+        form, span = function.form, call.span or place
+        return diagnostic(
+            "number_of_arguments", span, name=call.name, takes=function.takes, form=form
+        )
+    common = _numbers(list(call.args), kinds, place)
+    if isinstance(common, Diagnostic):
+        return common
+    if function.argument is not None and common != function.argument:
+        return diagnostic(
+            "argument_of_other_unit",
+            _span_of(call.args[0]) or call.span or place,
+            name=call.name,
+            takes=in_words(function.argument),
+            what=in_words(common),
+        )
+    if call.name != "sqrt":
+        return common if function.result is None else function.result
+    if any(power % 2 for power in common):
+        span = _span_of(call.args[0]) or call.span or place
+        return diagnostic("root_of_odd_unit", span, what=in_words(common))
+    return tuple(power // 2 for power in common)
+
+
+def _span_of(expression: e.Expression) -> Span | None:
+    """The span from the first to the last part that has one; None if no part has one."""
+    spans: list[Span] = [
+        span for part in e.parts(expression) if (span := getattr(part, "span", None))
+    ]
+    if not spans:
+        return None
+    return min(spans, key=lambda span: span.start).to(max(spans, key=lambda span: span.end))
 
 
 def _arithmetic(
@@ -275,7 +325,8 @@ def is_base(base: e.Expression) -> bool:
     return not any(isinstance(part, e.Arithmetic) and part.op == "^" for part in e.parts(base))
 
 
-def _describe(dimension: Dimension) -> str:
+def in_words(dimension: Dimension) -> str:
+    """`a quantity in m`, or `a number without a unit`."""
     name = base_name(dimension)
     return f"a quantity in {name}" if name else "a number without a unit"
 
@@ -284,7 +335,7 @@ def _mismatch(message: str, part: e.Expression, span: Span) -> Diagnostic:
     return Diagnostic(
         Code.UNIT_MISMATCH,
         message,
-        getattr(part, "span", None) or span,
+        getattr(part, "span", None) or _span_of(part) or span,
         help="give each number its unit: `min_range < 5 cm`",
     )
 
@@ -293,7 +344,7 @@ def _kind_error(message: str, part: e.Expression, span: Span) -> Diagnostic:
     return Diagnostic(
         Code.BAD_EXPRESSION,
         message,
-        getattr(part, "span", None) or span,
+        getattr(part, "span", None) or _span_of(part) or span,
         help="compare numbers, `x < 5 m`, and join truth values by `and`, `or`, `not`",
     )
 
@@ -376,7 +427,9 @@ def _ambiguous(name: str, part: str, span: Span) -> Diagnostic:
 
 
 def _unknown_function(name: str, span: Span) -> Diagnostic:
-    return diagnostic("unknown_function", span, name=name, functions=", ".join(FUNCTIONS))
+    return diagnostic(
+        "unknown_function", span, name=name, functions=", ".join((*FUNCTIONS, *OF_VALUES))
+    )
 
 
 def _unexpected(part: Span, text: Span) -> Diagnostic:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from fretish import expressions as e
-from fretish.bindings.declarations import Signal
+from fretish.bindings.declarations import ComputedSignal, MeasuredSignal
 from fretish.bindings.expressions import FUNCTIONS
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic, DiagnosticError, did_you_mean
@@ -24,7 +24,7 @@ _MOST_LISTED = 12
 
 @with_recursion_limit
 def resolve_words(
-    expression: e.Expression, signals: Mapping[str, Signal], span: Span | None = None
+    expression: e.Expression, signals: Mapping[str, MeasuredSignal], span: Span | None = None
 ) -> e.Expression | Diagnostic:
     """The expression with each word as a `Word`, and without comparisons with `true` or `false`.
 
@@ -45,13 +45,24 @@ def resolve_words(
         return error.diagnostic
 
 
+@with_recursion_limit
+def resolve_number(
+    expression: e.Expression, signals: Mapping[str, MeasuredSignal], span: Span
+) -> e.Expression | Diagnostic:
+    """The same of an expression that must be a number; the diagnostic of a word in it."""
+    try:
+        return _Resolver(signals, span).number(expression)
+    except _WordError as error:
+        return error.diagnostic
+
+
 class _WordError(DiagnosticError):
     """Carries a diagnostic out of the recursion."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Resolver:
-    signals: Mapping[str, Signal]
+    signals: Mapping[str, MeasuredSignal]
     place: Span | None
 
     def truth(self, tree: e.Expression) -> e.Expression:
@@ -137,11 +148,11 @@ class _Resolver:
         assert second is not None
         return e.Comparison(tree.op, self._word(left, second), right, tree.span)
 
-    def _enumerated(self, tree: e.Expression) -> Signal | None:
+    def _enumerated(self, tree: e.Expression) -> MeasuredSignal | None:
         signal = self.signals.get(tree.id) if isinstance(tree, e.Name) else None
         return signal if signal is not None and signal.values else None
 
-    def _word(self, tree: e.Expression, signal: Signal) -> e.Word:
+    def _word(self, tree: e.Expression, signal: MeasuredSignal) -> e.Word:
         """The other side of a comparison with an enumerated signal, as one of its words."""
         match tree:
             case e.Word(text, span):
@@ -160,7 +171,7 @@ class _Resolver:
         return e.Word(text, span)
 
     def _check_enumerated(
-        self, first: Signal, second: Signal, left: e.Expression, right: e.Expression
+        self, first: MeasuredSignal, second: MeasuredSignal, left: e.Expression, right: e.Expression
     ) -> None:
         """Check a comparison of two enumerated signals: equal values, and no ambiguous name."""
         for signal, other, part in ((first, second, right), (second, first, left)):
@@ -190,9 +201,11 @@ class _Resolver:
             diagnostic("word_without_values", word.span or self.place, word=word.text, side=side)
         )
 
-    def _check_truth(self, signal: Signal, span: Span | None) -> None:
+    def _check_truth(self, signal: MeasuredSignal, span: Span | None) -> None:
         """F308 if the signal cannot be used as a truth value."""
         name = signal.name
+        if isinstance(signal, ComputedSignal):
+            raise _WordError(diagnostic("computed_as_truth", span or self.place, name=name))
         if signal.values:
             raise _WordError(
                 diagnostic("word_as_truth", span or self.place, name=name, word=signal.values[0])
@@ -206,7 +219,9 @@ class _Resolver:
 
     # Mistakes
 
-    def _number_needed(self, what: str, signal: Signal | None, span: Span | None) -> _WordError:
+    def _number_needed(
+        self, what: str, signal: MeasuredSignal | None, span: Span | None
+    ) -> _WordError:
         name, word = (signal.name, signal.values[0]) if signal else ("mode", "word")
         return _WordError(
             diagnostic("word_as_number", span or self.place, what=what, name=name, word=word)
@@ -218,7 +233,7 @@ class _Resolver:
         place = span or getattr(left, "span", None) or getattr(right, "span", None)
         return _WordError(diagnostic("words_without_order", place or self.place, operator=op))
 
-    def _kind_error(self, signal: Signal, what: str, span: Span | None) -> _WordError:
+    def _kind_error(self, signal: MeasuredSignal, what: str, span: Span | None) -> _WordError:
         return _WordError(
             diagnostic(
                 "word_with_other",
@@ -229,12 +244,12 @@ class _Resolver:
             )
         )
 
-    def _ambiguous_word(self, text: str, signal: Signal, span: Span | None) -> _WordError:
+    def _ambiguous_word(self, text: str, signal: MeasuredSignal, span: Span | None) -> _WordError:
         return _WordError(
             diagnostic("ambiguous_word", span or self.place, text=text, signal=signal.name)
         )
 
-    def _unknown_word(self, text: str, signal: Signal, span: Span | None) -> _WordError:
+    def _unknown_word(self, text: str, signal: MeasuredSignal, span: Span | None) -> _WordError:
         guess, values = did_you_mean(text, signal.values, ""), listed(signal.values)
         help_ = f"{guess} its values are {values}".lstrip()
         place = span or self.place

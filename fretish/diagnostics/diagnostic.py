@@ -96,7 +96,7 @@ class Code(Enum):
     )
     NO_ROLE = ("F354", "a variable has no declared role")
     PROSE_DRIFT = ("F351", "title or text state another number than the requirement")
-    DEFINITION_CIRCLE = ("F342", "the values of variables form a cycle")
+    DEFINITION_CIRCLE = ("F342", "the values of variables or signals form a cycle")
     DOUBLE_DEFINITION = ("F343", "a name is defined in two ways")
     VARIABLE_TYPE = ("F344", "a variable is used against its declared type")
     AMBIGUOUS_UNIT = ("F339", "a part of a unit is also the name of a signal")
@@ -240,6 +240,10 @@ class Code(Enum):
     BAD_QUERY = ("F913", "the query cannot be answered")
     BAD_SCENARIO = ("F914", "the scenario of a simulation cannot be run")
     AGENT_NOT_STARTED = ("F915", "the agent of a simulation cannot be started")
+    NOT_IMPORTED = ("F917", "a part of an agent or of its properties is not imported")
+    BELIEF_IS_ACTION = ("F918", "a property is about a belief that is an action of the agent")
+    AGENT_UNFIT = ("F919", "an agent of your own does not fit the bindings")
+    NO_REPORT = ("F916", "messages of the trace of an agent are no reports")
     NO_KEY = ("F920", "the user has no key, so results of an interrupted audit are not kept")
     FOREIGN_PLACE = ("F921", "evidence names a log outside the permitted places")
     TOO_COSTLY = ("F930", "the input needs more CPU time or memory than allowed")
@@ -266,6 +270,12 @@ class Code(Enum):
     NOT_PUBLISHED = ("F963", "the verdicts of a watch cannot be published")
     DISORDERED = ("F964", "a watched log has messages out of order")
     UNNUMBERED = ("F965", "messages of a watched topic have no number")
+    NOT_RENAMED = ("F966", "a name cannot be renamed")
+    NO_READING = ("F975", "a text in plain English has no reading")
+    WORDS_LEFT_OUT = ("F976", "no reading contains some words of a text")
+    SEVERAL_READINGS = ("F977", "several readings of a text are left")
+    NO_SUCH_READING = ("F978", "the chosen reading does not exist")
+    ID_NOT_WRITTEN = ("F979", "a requirement cannot have the id for writing it")
     INTERNAL = ("F999", "internal error in fretc")
 
     @property
@@ -296,6 +306,8 @@ class Diagnostic:
     """The reason why the project accepts a warning, which is displayed nevertheless."""
     fix: Fix | None = None
     """The fix in `help` as a value, if it replaces a span by a text."""
+    related: tuple[Span, ...] = ()
+    """Other places that the message is about."""
 
     @property
     def is_error(self) -> bool:

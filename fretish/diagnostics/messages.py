@@ -64,6 +64,7 @@ def messages(code: Code) -> dict[str, Message]:
     }
 
 
+@cache
 def message(name: str) -> Message:
     """The message of that name.
 
@@ -87,6 +88,7 @@ def diagnostic(
     paste: str = "",
     subject: str = "",
     fix: Fix | None = None,
+    related: tuple[Span, ...] = (),
     **values: object,
 ) -> Diagnostic:
     """The diagnostic with the message of that name.
@@ -98,6 +100,7 @@ def diagnostic(
         paste: lines that the help says to paste into a file.
         subject: the topic or hazard of a warning, by which it can be accepted.
         fix: the fix as a value, if it replaces a span by a text.
+        related: other places that the message is about.
         values: the value of each placeholder, inserted as it is.
 
     Raises:
@@ -115,4 +118,5 @@ def diagnostic(
         paste,
         subject,
         fix=fix,
+        related=related,
     )

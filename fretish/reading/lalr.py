@@ -94,13 +94,12 @@ class Parser:
         self._rows: dict[int, Mapping[str, int]] = {}
         self._rules: dict[int, _Rule] = {}
 
-    def tokens(self, text: str) -> Iterator[Token]:
-        """The words of a text.
+    def tokens(self, text: str, position: int = 0) -> Iterator[Token]:
+        """The words of a text from a position on.
 
         Raises:
             UnexpectedCharacterError: no word begins at a position.
         """
-        position = 0
         while position < len(text):
             match = self._terminals.match(text, position)
             if match is None:
@@ -109,6 +108,32 @@ class Parser:
             if kind not in self._skip:
                 yield Token.at(kind, match[0], position)
             position = match.end()
+
+    def known_tokens(self, text: str) -> Iterator[Token]:
+        """The words of a text, without the characters at which no word begins."""
+        position = 0
+        while position < len(text):
+            try:
+                for token in self.tokens(text, position):
+                    position = token.end_pos
+                    yield token
+                return
+            except UnexpectedCharacterError as error:
+                position = error.position + 1
+
+    def continuations(self, text: str, start: str = "start") -> frozenset[str]:
+        """The types of token with which a text can continue; none if it has a mistake."""
+        first, _ = self._tables.starts[start]
+        tree, states = _Tree(), [first]
+        try:
+            for token in self.tokens(text):
+                while (step := self._step(states, token, None)) < 0:
+                    self._reduce(-1 - step, states, tree)
+                states.append(step)
+                tree.push(token)
+        except (UnexpectedCharacterError, UnexpectedTokenError):
+            return frozenset()
+        return self._accepted(states)
 
     def parse(self, text: str, start: str = "start") -> list[SyntaxTreeNode]:
         """The nodes of the parse tree of a text; children come first, the root is the last.

@@ -77,6 +77,40 @@ def budget(size: int) -> Iterator[None]:
         _budgets.clear()
 
 
+class StoppedError(BaseException):
+    """A block has been stopped because its result is no longer wanted."""
+
+
+@contextmanager
+def stoppable(stop: Callable[[], bool], seconds: float) -> Iterator[None]:
+    """Context that ends a block as soon as its result is no longer wanted.
+
+    All readings in the block share one limit. In other threads than the main one, and where
+    `periodically` calls nothing, the block is not stopped.
+
+    Args:
+        stop: whether to end the block; called every `_LOOK` CPU seconds.
+        seconds: CPU seconds that the block may take.
+
+    Raises:
+        StoppedError: `stop` returned true.
+        ExceededError: the block exceeds a limit.
+    """
+    assert not _budgets, "a reading cannot be stopped from within"
+
+    def look() -> None:
+        if stop():
+            raise StoppedError
+        _look()
+
+    _budgets.append(_Budget(time.process_time() + seconds, resident_memory() + MEMORY))
+    try:
+        with periodically(_LOOK, look):
+            yield
+    finally:
+        _budgets.clear()
+
+
 def extend_budget(size: int) -> None:
     """Extend the active budget, if there is one, by the costs of `size` bytes."""
     for current in _budgets:

@@ -105,6 +105,11 @@ def _headers(text: str) -> Mapping[tuple[str, ...], _Header]:
     return headers
 
 
+def header_places(text: str) -> Mapping[tuple[str, ...], tuple[int, int]]:
+    """Path of a table → start and end of its name in the first header that begins with it."""
+    return {path: header.name for path, header in _headers(text).items()}
+
+
 def _key(key: str) -> re.Pattern[str]:
     return re.compile(
         rf"(?:^|[{{,])[ \t]*[\"']?(?P<key>{re.escape(key)})[\"']?[ \t]*=", re.MULTILINE

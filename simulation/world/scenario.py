@@ -133,6 +133,28 @@ class Transport:
 
 
 @dataclass(frozen=True, slots=True)
+class AgentFault:
+    """What goes wrong with the agent, its connection or its clock. Seconds of simulated time."""
+
+    kind: Literal[
+        "killed",
+        "frozen",
+        "out of memory",
+        "endpoint killed",
+        "dropped",
+        "delayed",
+        "duplicated",
+        "reordered",
+        "clock stepped",
+    ]
+    at: float
+    seconds: float = 0.0
+    """How long; 0: for good. What is killed or out of memory stays so; an endpoint is restarted."""
+    by: float = 0.0
+    """How far the clock of the agent is stepped."""
+
+
+@dataclass(frozen=True, slots=True)
 class Recorder:
     """Faults of the log itself. Seconds of simulated time."""
 
@@ -176,6 +198,8 @@ class Scenario:
     interceptor: Interceptor = field(default_factory=Interceptor)
     transport: Mapping[str, Transport] = field(default_factory=lambda: MappingProxyType({}))
     recorder: Recorder = field(default_factory=Recorder)
+    agent: AgentFault | None = None
+    """Such a mission needs an agent as its safety function."""
     expect: Expectations = field(default_factory=Expectations)
     name: str = "custom"
 
@@ -188,6 +212,11 @@ def names() -> tuple[str, ...]:
     """The scenarios that come with the simulation, sorted."""
     folder = Path(str(files("simulation"))) / "scenarios"
     return tuple(sorted(path.stem for path in folder.glob("*.toml")))
+
+
+def without_agent() -> tuple[str, ...]:
+    """Those of `names` that need no agent."""
+    return tuple(name for name in names() if load(name).agent is None)
 
 
 def load(name: str) -> Scenario:
@@ -241,6 +270,9 @@ def _mistakes(scenario: Scenario) -> Iterator[str]:
         if not 0 <= value <= 1:
             yield f"`{name}` must be between 0 and 1"
     yield from _interceptor_mistakes(scenario.interceptor)
+    fault = scenario.agent
+    if fault is not None and bool(fault.by) != (fault.kind == "clock stepped"):
+        yield "`agent.by` must be given with `clock stepped`, and only then"
     expectation = scenario.expect
     ids = [id for each in fields(expectation) for id in getattr(expectation, each.name)]
     twice = next((id for id in ids if ids.count(id) > 1), None)
@@ -262,7 +294,7 @@ def _interceptor_mistakes(node: Interceptor) -> Iterator[str]:
 
 _MOST = 2**20
 """Bytes of a scenario."""
-_SIGNED = {"recorder.jump_by"}
+_SIGNED = {"recorder.jump_by", "agent.by"}
 """Numbers that may be negative, beside places: a clock may jump back."""
 
 T = TypeVar("T")

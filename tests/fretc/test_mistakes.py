@@ -56,7 +56,7 @@ output = "/wheels"
 period = "50 ms"
 """
 HAZARDS = '[HAZ-1]\ntitle = "It collides"\n[HAZ-2]\ntitle = "It stops"\n'
-SHARED = ("interceptor", "assume", "environment", "map", "run")
+SHARED = ("interceptor", "assume", "environment", "map", "run", "agent")
 """Tables that belong to no single requirement; `environment` is `[[assume.requirement]]`."""
 SENTENCES = {
     "R1": "the alpha shall always satisfy p",
@@ -126,6 +126,7 @@ MISTAKES = {
     ),
     "a broken map": of_table("map", '"50 ms"\n[map]\nx = 3\n'),
     "a broken label": of_table("run", '"50 ms"\n[run.label]\nversion = 3\n', "F551"),
+    "a broken agent": of_table("agent", '"50 ms"\n[agent]\ntrace = 3\n'),
     "a broken hazard": Mistake("hazards.toml", "F502", '[HAZ-2]\ntitle = "It stops"', "[HAZ-2]"),
     "broken settings": Mistake("fretc.toml", "F520", "all", "accept = 3\n"),
 }  # fmt: skip
@@ -291,7 +292,7 @@ def nothing(_: Run) -> Made:
 
 READ_THE_LOOP = {"dafny", "interceptor", "ros1-package", "ros2-package", "ros2-cpp-package"}
 OF_LOOP = frozenset({"interceptor", "assume"})
-OF_AUDITS = frozenset({"map", "run"})
+OF_AUDITS = frozenset({"map", "run", "agent"})
 OF_TESTS = OF_AUDITS | {"environment"}
 AUDIT = ("audit", "l.mcap", "-o", "build/evidence.json", "--jobs", "1")
 LOCK = ("lock", "--reviewer", "a", "--role", "b", "--comment", "c", "--date", "2026-11-20",
@@ -352,8 +353,9 @@ COMMANDS = {
 }
 NO_PROJECT = {
     "init", "fmt", "import", "info", "trends", "sign", "sbom", "completion", "simulate",
+    "lsp", "write",
 }  # fmt: skip
-"""Commands that take no project, or each file of it by itself."""
+"""Commands that take no project, each file of it by itself, or its names alone."""
 
 
 def test_every_command_that_takes_a_project_is_tried() -> None:

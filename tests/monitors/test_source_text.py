@@ -10,8 +10,12 @@ from monitors.source_text import kernel_of_variables, perception
 
 @pytest.mark.parametrize(
     ("text", "one"),
-    [(kernel_of_variables().text, "Listing"), (perception().text, "StatusPublisher")],
-    ids=["monitor", "perception"],
+    [
+        (kernel_of_variables().text, "Listing"),
+        (perception().text, "StatusPublisher"),
+        (perception(rounds=True).text, "ROUNDED_FUNCTIONS"),
+    ],
+    ids=["monitor", "perception", "functions"],
 )
 def test_no_two_modules_of_the_run_time_define_one_name(text: str, one: str) -> None:
     """In the text of a monitor the later one would take the place of the other."""

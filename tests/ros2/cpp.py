@@ -28,7 +28,7 @@ def write_headers(
     """
     known: dict[str, str] = {}
     for name in types:
-        _define(name.replace("/", "/msg/"), known)
+        _define(full_name(name), known)
     standard = ("array", "cstdint", "memory", "sstream", "string", "vector")
     heads = "".join(f"#include <{each}>\n" for each in standard)
     _write(folder, heads + "".join(known.values()), fields)
@@ -69,10 +69,15 @@ def _write(folder: Path, messages: str, fields: dict[str, str]) -> None:
         f"{{{_cpp(name)} m; {body} return m;}}\n"
         for name, body in fields.items()
     )
+    names = "".join(
+        f'inline std::string type_name(const {_cpp(name)} *) {{return "{full_name(name)}";}}\n'
+        for name, body in fields.items()
+        if "return" not in body
+    )
     template = "template<class Message> Message made(std::istream & text);\n"
-    (folder / "messages.hpp").write_text(f"#pragma once\n{messages}{template}{tells}")
-    names = "rclcpp/rclcpp", *(f"rclcpp_lifecycle/lifecycle_{x}" for x in ("node", "publisher"))
-    for name in names:
+    (folder / "messages.hpp").write_text(f"#pragma once\n{messages}{template}{tells}{names}")
+    headers = "rclcpp/rclcpp", *(f"rclcpp_lifecycle/lifecycle_{x}" for x in ("node", "publisher"))
+    for name in headers:
         path = folder / f"{name}.hpp"
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text('#include "fake.hpp"\n')
@@ -98,6 +103,11 @@ def built(
     command = [installed("g++"), "-std=c++17", *in_cpp, str(main), *objects]
     subprocess.run([*command, "-o", str(folder / main.stem)], check=True)
     return folder / main.stem
+
+
+def full_name(name: str) -> str:
+    """`sensor_msgs/LaserScan` → `sensor_msgs/msg/LaserScan`."""
+    return name.replace("/", "/msg/")
 
 
 def _cpp(name: str) -> str:

@@ -15,6 +15,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from fretish import expressions as e
 from fretish import units
 from fretish.bindings import constants
+from fretish.bindings.declarations import Signal
 from fretish.bindings.types import Kind, kind
 from fretish.checking import LOOK_AHEAD, LOOK_BACK, NUMBERS_BACK
 from fretish.classes.frozen import dataclass
@@ -63,7 +64,7 @@ class RequirementTerms:
             name: signal
             for requirement in requirements
             for name, signal in (
-                requirement.declarations.signals if requirement.declarations else {}
+                requirement.declarations.measured if requirement.declarations else {}
             ).items()
         }
         self._types = {
@@ -127,7 +128,9 @@ class RequirementTerms:
     def _range(self, name: str) -> tuple[int, int] | None:
         """The range of a message type that is one integer."""
         signal = self._signals.get(name)
-        if signal is None or signal.type is None or str(signal.path) != f"{signal.path.topic}.data":
+        if not isinstance(signal, Signal) or signal.type is None:
+            return None
+        if str(signal.path) != f"{signal.path.topic}.data":
             return None
         return _RANGES.get(signal.type.replace("/msg/", "/"))
 
@@ -175,6 +178,8 @@ class RequirementTerms:
         match part:
             case e.Word(text):
                 return z3.IntVal(self._place(text))
+            case e.Calculation(_, value):
+                return read(value)
             case e.Name(id):
                 return self._variable(id, is_base=is_base)
             case e.Negation(arg):

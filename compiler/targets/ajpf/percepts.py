@@ -50,7 +50,10 @@ def _reasons(requirement: FormalizedRequirement, form: Sif) -> Iterator[tuple[st
     for signal in signals(declared, form):
         yield from _of_signal(signal, declared)
     for percept in _meanings(declared, form):
-        if any(isinstance(part, n.MinMax) for part in _numbers(percept.truth)):
+        if any(isinstance(part, n.RoundedCall) for part in _numbers(percept.truth)):
+            fix = "publish the value as a field, and bind the field"
+            yield f"a function of a computed signal in the percept `{percept.name}`", fix
+        elif any(isinstance(part, n.MinMax) for part in _numbers(percept.truth)):
             fix = "compare each number, and combine the comparisons"
             yield f"`min` or `max` of a number in the percept `{percept.name}`", fix
         elif len(_printer(signals(declared, form)).truth(percept.truth)) > _LONGEST:

@@ -23,7 +23,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.ajpf import bundle, names, percepts
 from compiler.targets.ajpf.safety_function import Sif
 from compiler.targets.target import DEFAULT, Target, TargetOptions, stem
-from fretish.bindings.declarations import ActionBinding, Declarations
+from fretish.bindings.declarations import ActionBinding, Declarations, ServiceCall
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.reading.recursion import with_recursion_limit
@@ -72,15 +72,12 @@ def _unbound(requirement: FormalizedRequirement, form: Sif) -> Diagnostic | None
     if declared.interceptor is None:
         return diagnostic("stop_topic_not_bound", span, requirement=id, bindings=name)
     for action in actions:
-        if action not in declared.actions:
+        if action not in declared.actions and action not in declared.calls:
             return diagnostic(
                 "action_not_bound", span, requirement=id, action=action, bindings=name
             )
     stop = _topic(declared.interceptor.stop)
-    stops = [declared.actions[a] for a in actions if _topic(declared.actions[a].topic) == stop]
-    if not stops:
-        named = ", ".join(f"`{action}`" for action in actions)
-        return diagnostic("no_action_stops", span, requirement=id, stop=stop, actions=named)
+    stops = [each for each in declared.actions.values() if _topic(each.topic) == stop]
     for each in stops:
         if each.type != "std_msgs/Bool" or each.message not in _BOOLEANS:
             return diagnostic(
@@ -91,6 +88,9 @@ def _unbound(requirement: FormalizedRequirement, form: Sif) -> Diagnostic | None
                 type=each.type,
                 stop=stop,
             )
+    if not any(e.message == _BOOLEANS[0] and e.action in actions for e in stops):
+        named = ", ".join(f"`{action}`" for action in actions)
+        return diagnostic("no_action_stops", span, requirement=id, stop=stop, actions=named)
     return None
 
 
@@ -124,7 +124,7 @@ def package(requirement: FormalizedRequirement) -> str:
 def _files(requirement: FormalizedRequirement, options: TargetOptions) -> dict[str, str]:
     form, declared = _form(requirement, options), _declared(requirement)
     assert declared.interceptor is not None, "it is refused"
-    bound = [declared.actions[action] for action in _actions(form)]
+    bound, calls = [*declared.actions.values()], [*declared.calls.values()]
     name = package(requirement)
     values = {
         "package": name,
@@ -135,6 +135,7 @@ def _files(requirement: FormalizedRequirement, options: TargetOptions) -> dict[s
         "signals": percepts.signal_code(declared, form),
         "percepts": percepts.percept_code(declared, form),
         "actions": [_action_code(each) for each in bound],
+        "calls": [_call_code(each) for each in calls],
     }
     texts = {
         "SIF.gwen": bundle.texts(requirement, form, options)["SIF.gwen"],
@@ -145,7 +146,7 @@ def _files(requirement: FormalizedRequirement, options: TargetOptions) -> dict[s
         .read_text(encoding="utf-8"),
         "README.md": render("agent-runtime/README.md.j2", **values),
     }
-    manifest = _manifest(requirement, form, bound)
+    manifest = _manifest(requirement, form, bound, calls)
     digests = {file: sha256(text) for file, text in sorted(texts.items())}
     return {**texts, "manifest.json": f"{to_json({**manifest, 'files': digests})}\n"}
 
@@ -159,8 +160,21 @@ def _action_code(bound: ActionBinding) -> Mapping[str, str]:
     }
 
 
+def _call_code(call: ServiceCall) -> Mapping[str, str]:
+    return {
+        "name": percepts.literal(call.action),
+        "service": percepts.literal(_topic(call.service)),
+        "type": percepts.literal(call.type),
+        "request": percepts.literal(call.request),
+        "limit": str(call.limit),
+    }
+
+
 def _manifest(
-    requirement: FormalizedRequirement, form: Sif, bound: Sequence[ActionBinding]
+    requirement: FormalizedRequirement,
+    form: Sif,
+    bound: Sequence[ActionBinding],
+    calls: Sequence[ServiceCall],
 ) -> dict[str, Any]:
     declared = _declared(requirement)
     assert declared.interceptor is not None, "it is refused"
@@ -188,6 +202,16 @@ def _manifest(
             }
             for each in bound
         ],
+        "calls": [
+            {
+                "action": each.action,
+                "service": _topic(each.service),
+                "type": each.type,
+                "request": loads(each.request),
+                "limit_ns": each.limit,
+            }
+            for each in calls
+        ],
     }
 
 
@@ -206,6 +230,6 @@ TARGET = Target(
         partial(refusal, options=_WEAKEN),
         partial(bundle.remark, options=_WEAKEN),
     ),
-    reads=("interceptor", "action"),
+    reads=("interceptor", "action", "call"),
     next_step="`python3 run.py` in the folder starts it",
 )

@@ -1,10 +1,11 @@
 """Run the agent of this folder in MCAPL, beside a robot with rosbridge.
 
-Usage: AJPF_HOME=/path/to/mcapl python3 run.py [--url ws://localhost:9090]
+Usage: AJPF_HOME=/path/to/mcapl python3 run.py [--url ws://localhost:9090] [--agent FILE]
 
-Exit status 2: MCAPL, Java or a file is missing or changed, or rosbridge refuses a topic. Else it
-runs until it is ended. Environment variables: AJPF_HOME, the folder of MCAPL; JAVA_HOME, if java
-and javac are not on PATH; AGENT_JAVA_OPTIONS, options of java. It needs Java 11 or newer.
+Exit status 2: MCAPL, Java or a file is missing or changed, an agent of your own does not fit the
+bindings, or rosbridge refuses a topic. Else it runs until it is ended. Environment variables:
+AJPF_HOME, the folder of MCAPL; JAVA_HOME, if java and javac are not on PATH; AGENT_JAVA_OPTIONS,
+options of java. It needs Java 11 or newer.
 """
 
 import os
@@ -30,6 +31,8 @@ BAD = 2
 RELEASE = "11"
 ANTLR = "antlr-4.13"
 """MCAPL's parsers are made by it; a library that is older cannot read them."""
+DIES = "-XX:+ExitOnOutOfMemoryError"
+"""Without memory, the agent is silent, and the interceptor stops the robot."""
 TOPIC = r"/?[A-Za-z_]\w*(?:/[A-Za-z_]\w*)*"
 
 
@@ -46,18 +49,21 @@ def main(arguments: Sequence[str]) -> int:
     parser.add_argument(
         "--compression", choices=("cbor", "none"), default="cbor", help="encoding of messages"
     )
+    parser.add_argument("--agent", metavar="FILE", help="run this agent in place of SIF.gwen")
     options = parser.parse_args(arguments)
     here = Path(__file__).resolve().parent
     try:
         check(options)
         manifest = intact(here)
+        agent = here / "SIF.gwen" if options.agent is None else Path(options.agent)
+        events = None if options.agent is None else fitting(agent, manifest)
         java, javac, classes = tools()
         with tempfile.TemporaryDirectory(prefix="agent-") as build:
             compiled(here, Path(build), javac, classes)
-            command = [java, *shlex.split(os.environ.get("AGENT_JAVA_OPTIONS", "")), "-cp"]
+            command = [java, DIES, *shlex.split(os.environ.get("AGENT_JAVA_OPTIONS", "")), "-cp"]
             command += [f"{build}{os.pathsep}{classes}", "ail.mas.AIL"]
-            command.append(str(configured(here, Path(build), options)))
-            print(f"runs {manifest['agent']} at {options.url}", flush=True)
+            command.append(str(configured(here, Path(build), options, agent, events)))
+            print(f"runs {manifest['agent']} of {agent.name} at {options.url}", flush=True)
             return ran(command)
     except UnusableError as error:
         print(f"error: {error}", file=sys.stderr)
@@ -132,17 +138,68 @@ def compiled(here: Path, build: Path, javac: str, classes: str) -> None:
         raise UnusableError(f"the environment does not compile:\n{done.stdout}{done.stderr}")
 
 
-def configured(here: Path, build: Path, options: argparse.Namespace) -> Path:
+def configured(
+    here: Path, build: Path, options: argparse.Namespace, program: Path, events: str | None
+) -> Path:
     """The `.ail` with absolute paths and the options."""
     text = (here / "SIF.ail").read_text(encoding="utf-8")
-    shutil.copy(here / "SIF.gwen", build / "SIF.gwen")
+    shutil.copy(program, build / "SIF.gwen")
     agent = str(build / "SIF.gwen").replace("\\", "/")
     text = re.sub(r"(?m)^mas\.file = .*$", lambda match: f"mas.file = {agent}", text)
     for name in ("url", "clock", "trace", "compression"):
         text += f"bridge.{name} = {getattr(options, name)}\n"
+    text += "" if events is None else f"bridge.events = {events}\n"
     path = build / "SIF.ail"
     path.write_text(text, encoding="utf-8")
     return path
+
+
+def fitting(path: Path, manifest: Mapping[str, Any]) -> str:
+    """The beliefs whose appearance an agent has a plan for, after a check against the bindings.
+
+    It reads agents loosely: what it does not see is left to MCAPL.
+    """
+    try:
+        text = path.read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        raise UnusableError(f"{path} is no text: {error}") from error
+    text = re.sub(r"//[^\n]*|/\*.*?\*/", " ", re.sub(r'"[^"\n]*"', '""', text), flags=re.DOTALL)
+    name = re.search(r":name:\s*(\w+)", text)
+    if name is None or name[1] != manifest["agent"]:
+        raise UnusableError(f"{path} has no agent `{manifest['agent']}`: `:name:` has to be it")
+    head, _, plans = text.partition(":Plans:")
+    known = {*manifest["percepts"].values()}
+    known |= {*re.findall(r"[a-z]\w*", head.partition(":Initial Beliefs:")[2].partition(":")[0])}
+    bound = {each["action"] for kind in ("actions", "calls") for each in manifest[kind]}
+    events = {*re.findall(r"(?:^|;)\s*\+\s*([a-z]\w*)[^:;]*:\s*\{", plans)}
+    believed = events | {*re.findall(r"(?:^|;)\s*-\s*([a-z]\w*)[^:;]*:\s*\{", plans)}
+    believed |= {*re.findall(r"\bB\s+([a-z]\w*)", plans)}
+    deeds = [d.strip() for all_ in re.findall(r"<-([^;]*);", plans) for d in separate(all_)]
+    known |= {m[1] for deed in deeds if (m := re.match(r"\+\s*([a-z]\w*)", deed))}
+    for belief in sorted(believed - known):
+        raise UnusableError(
+            f"F919 no percept shows `{belief}`, and the agent does not add it: the percepts are "
+            f"{', '.join(sorted(manifest['percepts'].values()))}"
+        )
+    actions = {deed for deed in deeds if re.match(r"[a-z]\w*", deed)}
+    for action in sorted(a for a in actions if not re.match(r"print\b", a) and a not in bound):
+        raise UnusableError(
+            f"F919 nothing is bound to the action `{action}`: add `[action.{action}]` or "
+            f"`[call.{action}]` to the bindings, and emit this folder again"
+        )
+    return " ".join(sorted(events))
+
+
+def separate(deeds: str) -> Sequence[str]:
+    """Deeds without white space, divided at the commas outside of parentheses."""
+    parts, depth = [""], 0
+    for sign in re.sub(r"\s", "", deeds):
+        depth += (sign == "(") - (sign == ")")
+        if sign == "," and not depth:
+            parts.append("")
+        else:
+            parts[-1] += sign
+    return parts
 
 
 def ran(command: Sequence[str]) -> int:

@@ -18,7 +18,7 @@ from compiler.targets.python.comparisons import (
 )
 from fretish import expressions as e
 from fretish.bindings.comparisons import is_measured
-from fretish.bindings.declarations import Reading, Reduce, Signal
+from fretish.bindings.declarations import ComputedSignal, MeasuredSignal, Reading, Reduce
 from fretish.checking import conditions
 from fretish.classes.frozen import dataclass
 from fretish.reading.recursion import with_recursion_limit
@@ -102,7 +102,7 @@ def _compared(tree: e.Comparison, requirement: FormalizedRequirement) -> Compile
     A comparison bound by its text is evaluated from the names in its binding; the names in the
     sentence are not inputs.
     """
-    signals = requirement.declarations.signals if requirement.declarations else {}
+    signals = requirement.declarations.measured if requirement.declarations else {}
     is_bound = requirement.declarations and atom(tree) in requirement.declarations.propositions
     if is_bound and not is_measured(tree, signals):
         return None
@@ -123,10 +123,12 @@ def _compared(tree: e.Comparison, requirement: FormalizedRequirement) -> Compile
     return compared
 
 
-def _infinite(signal: Signal | None) -> tuple[str, ...]:
+def _infinite(signal: MeasuredSignal | None) -> tuple[str, ...]:
     """The infinities that a sample can be: far (`+inf`) and near (`-inf`)."""
     if signal is None:
         return ()
+    if isinstance(signal, ComputedSignal):
+        return ("+inf", "-inf")  # what is computed may be too large for a float
     invalid = signal.invalid
     meant = (invalid.nan, invalid.positive_infinity, invalid.negative_infinity, invalid.other)
     far, near = Reading.FAR in meant, Reading.NEAR in meant
@@ -135,7 +137,7 @@ def _infinite(signal: Signal | None) -> tuple[str, ...]:
 
 
 def _spoken(
-    tree: e.Comparison, signals: Mapping[str, Signal]
+    tree: e.Comparison, signals: Mapping[str, MeasuredSignal]
 ) -> tuple[tuple[str, ...], tuple[str, ...]] | None:
     """The enumerated signals of a comparison by `=` or `!=`, and its values."""
     match tree:

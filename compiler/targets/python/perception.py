@@ -92,13 +92,14 @@ def text(requirements: Sequence[FormalizedRequirement]) -> str:
     Args:
         requirements: requirements of one project that were not refused.
     """
-    joined = runtime()
+    table = setting(requirements)
+    joined = runtime(rounds=any("rounded(" in meaning for meaning in table.meanings))
     return render(
         "ros/perception.py.j2",
         version=__version__,
         imports=joined.imports,
         core=joined.text,
-        setting=setting(requirements),
+        setting=table,
     )
 
 
@@ -264,7 +265,7 @@ def _children(tree: n.Truth | n.Number) -> Iterable[n.Truth | n.Number]:
             return ()
         case n.Not(arg) | n.UnaryCall(_, arg) | n.ToBaseUnit(arg, _) | n.Power(arg, _):
             return (arg,)
-        case n.All(args) | n.Some(args):
+        case n.All(args) | n.Some(args) | n.RoundedCall(_, args):
             return args
         case (
             n.Iff(left, right)
@@ -313,5 +314,7 @@ def _number(tree: n.Number) -> str:
             return f"power({_number(base)}, {times})"
         case n.ToBaseUnit(arg, scale):
             return f"in_base({_number(arg)}, exact({str(scale)!r}))"
+        case n.RoundedCall(function, args):
+            return f"rounded({', '.join([repr(function), *map(_number, args)])})"
         case _:
             assert_never(tree)

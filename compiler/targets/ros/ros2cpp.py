@@ -33,6 +33,7 @@ from compiler.targets.witness_traces import RepeatedTick, witness_traces
 from fretish.bindings.declarations import Reading, Reduce
 from fretish.clock import TimeSource
 from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.messages import diagnostic
 
 _TEMPLATES = {
     "package.xml": "package.xml.j2",
@@ -48,7 +49,22 @@ _TEMPLATES = {
 
 def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
     """F312 and F601 for requirements without a monitor in C, or a ROS node."""
-    return shared.refuse(requirement) or monitor.refuse(requirement)
+    return shared.refuse(requirement) or monitor.refuse(requirement) or _of_computed(requirement)
+
+
+def _of_computed(requirement: FormalizedRequirement) -> Diagnostic | None:
+    """F601 for computed signals whose last digits would differ from those of an audit."""
+    at_instant = instant([requirement], gives_rounded=True)
+    if at_instant is None or not at_instant.given:
+        return None
+    signal = at_instant.given[0]
+    return diagnostic(
+        "not_judged_live",
+        signal.span or requirement.entry.wording,
+        requirement=requirement.id,
+        what=f"`{signal.name}` calls a function whose last digits differ in C++",
+        help="emit `ros2-package`, whose node is in Python, or publish the value as a field",
+    )
 
 
 def emit(

@@ -62,6 +62,11 @@ class Propositions:
                 all_comparisons(requirement).items() for requirement in requirements
             )
         )
+        self._computed = {
+            name
+            for requirement in requirements
+            for name in (requirement.declarations.computed if requirement.declarations else ())
+        }
         self._excluded = _exclusions(self._compared, requirements)
         for role, reason in self._uncertainties(requirements):
             self.uncertainties.setdefault(role, reason)
@@ -182,9 +187,14 @@ class Propositions:
                 continue
             whole = name in glossary and kind_of(glossary[name].type) in (Kind.WHOLE, Kind.NATURAL)
             plain = all(_is_plain(self._compared.get(atom), whole=whole) for atom in atoms)
-            plain = plain and self._elsewhere.isdisjoint(atoms)
+            plain = plain and self._elsewhere.isdisjoint(atoms) and self._is_of_one(atoms)
             if (len(atoms) > 1 or not isinstance(self._parts[atoms[0]], e.Name)) and not plain:
                 yield from self._uncertainty(atoms)
+
+    def _is_of_one(self, atoms: Sequence[str]) -> bool:
+        """Whether no computed signal meets another name, on which its value may depend."""
+        names = {each.id for atom in atoms for each in e.names(self._compared[atom])}
+        return len(names) <= 1 or names.isdisjoint(self._computed)
 
     def _uncertainty(self, atoms: Sequence[str]) -> Iterator[tuple[Role, str]]:
         """Role → why the valuations of these atoms may be impossible."""
@@ -233,7 +243,7 @@ def _exclusions(
         name: each
         for requirement in requirements
         for name, each in (
-            requirement.declarations.signals if requirement.declarations else {}
+            requirement.declarations.measured if requirement.declarations else {}
         ).items()
     }
     scales = {name: signal.scale for name, signal in signals.items()}

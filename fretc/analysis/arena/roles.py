@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from compiler.formalization.binding_agreement import first_use
 from compiler.formalization.formalized import FormalizedRequirement
 from fretish import expressions as e
+from fretish.bindings.calculations import without_calculations
 from fretish.bindings.declarations import Declarations, Role
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
@@ -77,7 +78,8 @@ def _common(declarations: Declarations, name: str) -> Role | None:
     proposition = declarations.propositions.get(name)
     if proposition is None:
         return None
-    signals = (declarations.signals.get(signal) for signal in proposition.signals)
+    read = {name.id for name in e.names(without_calculations(proposition.expression))}
+    signals = (declarations.measured.get(name) for name in read)
     theirs = {signal.role if signal is not None else None for signal in signals}
     common = theirs.pop() if len(theirs) == 1 else None
     return common if common in CHOSEN else None
@@ -90,7 +92,7 @@ def _no_role(
     declared, table = requirement.declarations, "variable"
     if declared is not None:
         table = "proposition" if name in declared.propositions else table
-        table = "signal" if name in declared.signals else table
+        table = "signal" if name in declared.measured else table
     answered = any(name in _answers(each) for each in requirements)
     likely = Role.OUTPUT if answered else Role.INPUT
     why = "occurs in a response" if answered else "occurs in no response"

@@ -8,7 +8,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import all_comparisons
 from compiler.formalization.resolution import candidates
 from fretish import expressions as e
-from fretish.bindings.declarations import Aggregate, Signal
+from fretish.bindings.declarations import Aggregate, Declarations, Signal
 from fretish.bindings.expressions import ticks_back
 from fretish.classes.frozen import dataclass
 
@@ -38,14 +38,23 @@ def readings(requirements: Sequence[FormalizedRequirement]) -> Iterator[tuple[st
     for requirement in requirements:
         compared, declared = all_comparisons(requirement), requirement.declarations
         for name, comparison in compared.items():
-            yield name, AtomReading(comparison, _names(comparison))
+            if not _is_computed(comparison, declared):
+                yield name, AtomReading(comparison, _names(comparison))
         for name, part in candidates(requirement.sentence):
             bound = declared.propositions.get(name) if declared is not None else None
-            if declared is None or bound is None or name in compared:
+            if declared is None or bound is None:
+                continue
+            if name in compared and not _is_computed(compared[name], declared):
                 continue
             if _is_measured(bound.expression, declared.signals):
                 own = bound.aggregate, bound.on_unknown, declared.clock.period
                 yield name, AtomReading(bound.expression, _names(part), *own)
+
+
+def _is_computed(comparison: e.Comparison, declarations: Declarations | None) -> bool:
+    """Whether it names a computed signal, which depends on others: its expression is read."""
+    names = {name.id for name in e.names(comparison)}
+    return declarations is not None and not names.isdisjoint(declarations.computed)
 
 
 def _names(part: e.Expression) -> tuple[str, ...]:

@@ -108,6 +108,9 @@ class PropositionCoverage:
         yield f"{sign.glyph} {name}: {_expression(self.declarations, name)}", sign.colour
         for signal in self.declarations.propositions[name].signals:
             yield f"    {_bound(self.declarations.signals[signal])}", None
+        for signal in self.declarations.propositions[name].calculations:
+            computed = self.declarations.computed[signal]
+            yield f"    {signal} = {computed.text} {computed.unit_name}".rstrip(), None
         width = max((len(log.run) for log in self.logs), default=0)
         for log in self.logs:
             counts = "cannot be read" if log.tallies is None else _counted(log.tallies[name])

@@ -88,7 +88,7 @@ def _unread(
     if declared is not None and name in declared.propositions:
         return ()
     return binding_agreement.missing_signals(
-        requirement, name, declared.signals if declared else {}
+        requirement, name, declared.measured if declared else {}
     )
 
 

@@ -28,3 +28,5 @@ class AuditedRequirement:
     """The probability; with one, only all runs together are judged."""
     is_assumption: bool = False
     """Whether it demands something of the environment."""
+    beliefs: tuple[tuple[str, str], ...] = ()
+    """Each proposition with its belief, where the names differ, if agents report beliefs."""

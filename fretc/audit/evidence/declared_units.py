@@ -10,7 +10,7 @@ from compiler.files.records import replace
 from fretc.audit.evidence.samples import WindowSamples
 from fretc.audit.evidence.schema import Result, ThresholdRecord, Violation
 from fretish.bindings.amounts import declared_unit, scaled, shared_unit
-from fretish.bindings.declarations import Declarations, Signal
+from fretish.bindings.declarations import Declarations, MeasuredSignal
 
 
 def in_declared_units(result: Result, declared: Declarations | None) -> Result:
@@ -19,7 +19,7 @@ def in_declared_units(result: Result, declared: Declarations | None) -> Result:
     A signal that the bindings do not declare, or now in units of another dimension, stays in its
     base unit.
     """
-    return result if declared is None else _result(result, declared.signals)
+    return result if declared is None else _result(result, declared.measured)
 
 
 def thresholds_in_declared_units(
@@ -28,7 +28,7 @@ def thresholds_in_declared_units(
     """The thresholds in declared units."""
     if declared is None:
         return tuple(thresholds)
-    return tuple(_threshold(threshold, declared.signals) for threshold in thresholds)
+    return tuple(_threshold(threshold, declared.measured) for threshold in thresholds)
 
 
 def without_samples(results: Sequence[Result], declared: Declarations | None) -> tuple[Result, ...]:
@@ -47,7 +47,7 @@ def bare(result: Result) -> Result:
     return replace(result, violations=violations)
 
 
-def _result(result: Result, declared: Mapping[str, Signal]) -> Result:
+def _result(result: Result, declared: Mapping[str, MeasuredSignal]) -> Result:
     units = {name: declared_unit(name, base, declared) for name, base in result.units.items()}
     return replace(
         result,
@@ -83,7 +83,9 @@ def _series(series: WindowSamples, factor: Fraction) -> WindowSamples:
     return replace(series, values=tuple(scaled(value, factor) for value in series.values))
 
 
-def _threshold(threshold: ThresholdRecord, declared: Mapping[str, Signal]) -> ThresholdRecord:
+def _threshold(
+    threshold: ThresholdRecord, declared: Mapping[str, MeasuredSignal]
+) -> ThresholdRecord:
     unit, factor = shared_unit(threshold.signal, threshold.unit, declared)
     if unit == threshold.unit and factor == 1:
         return threshold

@@ -1,4 +1,4 @@
-"""Plot data of a run: the path of the robot, and enumeration signals over time."""
+"""Plot data of a run: the path of the robot; enumeration signals and what agents do, over time."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fretc.audit.evidence.schema import MOST_POINTS, MOST_WORDS, EnumChanges, RobotPath, RunPlotData
+from fretc.logs.agents.word_signals import word_signals
 from fretc.logs.signals.propositions import history_of
 from fretc.logs.signals.samples import Gap, Numbers, Recording, Samples, Times
 from fretish.bindings.declarations import Declarations, MapCoordinates, Signal
@@ -35,6 +36,8 @@ def plot_data(recording: Recording, declarations: Declarations) -> RunPlotData |
         for name, signal in sorted(declarations.signals.items())
         if signal.values and name in recording.samples
     }
+    for name, samples in word_signals(recording.agents).items():
+        words[name] = _shown(samples.times, samples.values.astype(np.int64), samples.words)
     way = _way(declarations.map, recording) if declarations.map else None
     return RunPlotData(way, words) if way or words else None
 
@@ -65,11 +68,16 @@ def _words(signal: Signal, recording: Recording) -> EnumChanges:
     places = np.where(np.isnan(values), -1, values).astype(np.int64)
     last = np.append(times[1:] != times[:-1], True) if len(times) else np.zeros(0, bool)
     places, times = places[last], times[last]
+    return _shown(times, places, signal.values)
+
+
+def _shown(times: Times, places: NDArray[np.int64], words: Sequence[str]) -> EnumChanges:
+    """The first changes of places in the words; negative places are unknown."""
     changed = np.append(True, places[1:] != places[:-1]) if len(places) else np.zeros(0, bool)
     places, times = places[changed], times[changed]
     return EnumChanges(
         tuple(times[:MOST_WORDS].tolist()),
-        tuple(None if index < 0 else signal.values[index] for index in places[:MOST_WORDS]),
+        tuple(None if index < 0 else words[index] for index in places[:MOST_WORDS]),
         max(0, len(places) - MOST_WORDS),
     )
 

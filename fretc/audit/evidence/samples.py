@@ -67,7 +67,10 @@ class Surroundings(Record, frozen=True):
     samples: dict[str, WindowSamples]
     words: Annotated[
         dict[str, WordSeries] | UnsetType,
-        about("the values of enumeration signals; absent: there are none"),
+        about(
+            "the values of enumeration signals; what each agent believes, pursues and did last; "
+            "absent: there are none"
+        ),
     ] = UNSET
 
     def __post_init__(self) -> None:

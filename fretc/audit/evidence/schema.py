@@ -40,6 +40,7 @@ from fretc.audit.evidence.samples import (
     check_series,
     window,
 )
+from fretc.audit.measurements.beliefs import AgentBelief
 from fretc.audit.measurements.intervals import Moment as Moment
 from fretc.audit.measurements.intervals import TickInterval
 from fretc.audit.measurements.tallies import PropositionTally
@@ -92,6 +93,10 @@ class Violation(TickInterval, frozen=True):
     surroundings: Annotated[Surroundings | None, about("null after the first 100 violations")] = (
         field(name="window")
     )
+    beliefs: Annotated[
+        tuple[AgentBelief, ...] | UnsetType,
+        about("what agents believed; absent: they reported no belief about the requirement"),
+    ] = UNSET
 
     @property
     def window(self) -> RunPart | None:
@@ -320,7 +325,11 @@ class RunPlotData(Record, frozen=True):
         RobotPath | None, about("null: the bindings declare no map, or no position is known")
     ]
     words: Annotated[
-        dict[str, EnumChanges], about("each enumeration signal that the requirements read")
+        dict[str, EnumChanges],
+        about(
+            "each enumeration signal that the requirements read; what each agent believes, "
+            "pursues and did last"
+        ),
     ]
 
 
@@ -447,8 +456,8 @@ class Result(Record, frozen=True, kw_only=True):
     course: Annotated[
         RunPlotData | UnsetType,
         about(
-            "present in the first result of the run; absent if the bindings declare no map and "
-            "no enumeration signal is read"
+            "present in the first result of the run; absent if the bindings declare no map, no "
+            "enumeration signal is read, and no agent reports"
         ),
     ] = UNSET
     situations: Annotated[

@@ -304,6 +304,7 @@ def _violation(broken: Broken) -> Violation:
         missing=broken.missing,
         values=dict(broken.values),
         surroundings=_surroundings(broken.window) if broken.window else None,
+        beliefs=broken.beliefs or UNSET,
     )
 
 

@@ -7,15 +7,18 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import field
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fretc.audit.measurements.beliefs import AgentBelief, agent_beliefs
 from fretc.audit.measurements.intervals import Moment
+from fretc.logs.agents.word_signals import word_signals
 from fretc.logs.signals.enum_values import enum_value
 from fretc.logs.signals.samples import Recording, Samples, Values, scaled
 from fretish.classes.frozen import dataclass
-from monitors.kernel import Outcome
+from monitors.kernel import Column, Outcome
 
 SURROUNDINGS = 2 * 10**9
 """Nanoseconds before the trigger and after the deadline for which evidence keeps samples."""
@@ -38,13 +41,27 @@ class DemandText:
 
 
 @dataclass(frozen=True, slots=True)
+class BoundBeliefs:
+    """The propositions of a requirement as an agent may believe them."""
+
+    columns: Mapping[str, Column] = field(default_factory=dict)
+    """Proposition → its truth at each tick."""
+    names: Mapping[str, str] = field(default_factory=dict)
+    """Proposition → the belief, where the names differ."""
+
+
+NO_BELIEFS = BoundBeliefs()
+
+
+@dataclass(frozen=True, slots=True)
 class SampleWindow:
     """The samples around a violation, from `start_ns` to `end_ns`, both included."""
 
     start_ns: int
     end_ns: int
     samples: Mapping[str, Samples]
-    """At most `MOST_SAMPLES` of each signal, with the least and the greatest of them."""
+    """At most `MOST_SAMPLES` of each signal, with the least and the greatest of them; also what
+    agents believe and do, as signals of words."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +81,8 @@ class ViolationInterval:
     value; None: unknown."""
     window: SampleWindow | None
     """The samples around the violation; None after the first `MOST_WINDOWS`."""
+    beliefs: tuple[AgentBelief, ...] = ()
+    """What agents believed; empty after the first `MOST_WINDOWS`."""
 
 
 def violations(
@@ -73,6 +92,7 @@ def violations(
     at: Callable[[int], Moment],
     recording: Recording,
     signals: Sequence[str],
+    beliefs: BoundBeliefs = NO_BELIEFS,
 ) -> tuple[ViolationInterval, ...]:
     """Each interval of ticks at which the requirement was violated, in their order.
 
@@ -83,6 +103,7 @@ def violations(
         at: the moment of a tick.
         recording: the recording with the samples of the signals.
         signals: the signals that the sentence reads.
+        beliefs: the propositions that agents may believe.
     """
     answers, triggers = dict(outcome.answers), tuple(outcome.triggers)
     stretches = []
@@ -107,8 +128,15 @@ def violations(
             else None
         )
         values = {name: value_at(recording, name, broken.ns) for name in signals}
+        believed = (
+            agent_beliefs(recording, beliefs.columns, beliefs.names, at, begin, broken)
+            if window and recording.agents
+            else ()
+        )
         stretches.append(
-            ViolationInterval(broken, at(last), begin, due, demand.response, values, window)
+            ViolationInterval(
+                broken, at(last), begin, due, demand.response, values, window, believed
+            )
         )
     return tuple(stretches)
 
@@ -159,10 +187,10 @@ def _window(
 ) -> SampleWindow:
     start = min(trigger.ns, broken.ns) - SURROUNDINGS
     end = max(due.ns, broken.ns) + SURROUNDINGS
+    own = {name: recording.samples[name] for name in signals if name in recording.samples}
     samples = {
-        name: _around(recording.samples[name], start, end, broken.ns)
-        for name in signals
-        if name in recording.samples
+        name: _around(each, start, end, broken.ns)
+        for name, each in (own | word_signals(recording.agents)).items()
     }
     return SampleWindow(start, end, samples)
 

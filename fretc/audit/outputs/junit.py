@@ -15,7 +15,7 @@ from fretc.audit.evidence.result_summaries import audited_s
 from fretc.audit.evidence.schema import Result
 from fretc.audit.measurements.intervals import interval_words
 from fretc.audit.outputs.totals import runs
-from fretc.audit.outputs.violated_values import values
+from fretc.audit.outputs.violated_values import beliefs, values
 from fretish.classes.frozen import dataclass
 from fretish.documents import RequirementEntry
 
@@ -90,6 +90,8 @@ def _lines(case: Result) -> Iterator[str]:
     for broken in case.violations:
         stretch = interval_words(broken.first, broken.last, case.clock)
         yield f"{stretch}: {values(case, broken)}" if broken.values else stretch
+        if broken.beliefs:
+            yield beliefs(broken)
 
 
 def xml(name: str, suites: Iterable[Suite]) -> str:

@@ -11,7 +11,7 @@ from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 from compiler.files.checked_json import LARGEST_COUNT, LEAST
-from compiler.files.records import plain
+from compiler.files.records import UNSET, plain
 from compiler.files.text_files import open_regular, unreadable
 from fretc.audit.evidence.result_summaries import (
     EvidenceSource,
@@ -214,8 +214,8 @@ def _violations(source: EvidenceSource) -> Iterator[tuple[Any, ...]]:
         found = ((each.run, each.requirement, each.violations) for each in results)
     for run, requirement, violations in found:
         for violation in violations:
-            values = (plain(getattr(violation, name)) for name in _VIOLATION)
-            yield run, requirement, *map(_held, values)
+            values = (getattr(violation, name) for name in _VIOLATION)
+            yield run, requirement, *(_held(None if v is UNSET else plain(v)) for v in values)
 
 
 def _run(facts: RunFacts) -> tuple[Any, ...]:

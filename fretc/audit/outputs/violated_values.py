@@ -1,4 +1,4 @@
-"""The values of signals at a violation, for a person."""
+"""The values of signals and the beliefs of agents at a violation, for a person."""
 
 from __future__ import annotations
 
@@ -21,6 +21,11 @@ def values(result: Result, violation: Violation) -> str:
     )
 
 
+def beliefs(violation: Violation) -> str:
+    """What agents believed: `` `sw` did not believe `near`, which was true from 3.2 s``."""
+    return "; ".join(belief.in_words() for belief in violation.beliefs or ())
+
+
 def reason(result: Result) -> str:
     """The reason of the verdict; for a violated one, with the values at the first violation.
 
@@ -30,7 +35,8 @@ def reason(result: Result) -> str:
     first = next(iter(result.violations), None)
     if first is None or not first.values or result.trials is not None:
         return result.reason
-    return f"{result.reason}; at {seconds(first.start_s)} {values(result, first)}"
+    known = f"{result.reason}; at {seconds(first.start_s)} {values(result, first)}"
+    return "; ".join(filter(None, [known, beliefs(first)]))
 
 
 def _bounds(result: Result, signal: str) -> list[float]:

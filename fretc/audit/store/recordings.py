@@ -24,7 +24,14 @@ from numpy.typing import NDArray
 from compiler.files.build_id import build_id
 from compiler.files.text_files import Stamp, file_sha256, sha256, stamp, write
 from fretc.logs.signals.integrity import Checked, Integrity
-from fretc.logs.signals.samples import Late, Recording, Samples, Topic
+from fretc.logs.signals.samples import (
+    AgentTrace,
+    Late,
+    MentalState,
+    Recording,
+    Samples,
+    Topic,
+)
 from fretc.logs.storage.folders import is_folder
 from fretc.logs.storage.log_names import name_of
 from fretish.bindings.declarations import Declarations
@@ -33,7 +40,7 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source, Span
 from fretish.system.files import NO_LINK, NO_WAIT, TO_READ
 
-SCHEMA = "fretc-columns-2"
+SCHEMA = "fretc-columns-3"
 SUFFIX = ".columns"
 """The suffix of the folder beside the evidence."""
 _MOST = 2**28
@@ -138,7 +145,7 @@ def _reading(declarations: Declarations, wanted: Sequence[str], integrity: Integ
     signals = declarations.signals
     labels = {name: [repr(each) for each in some] for name, some in declarations.labels.items()}
     read = [repr(signals[name]) for name in wanted]
-    beside = repr(declarations.map)
+    beside = [repr(declarations.map), declarations.agent_trace]
     bound = sorted(map(repr, signals.values()))
     return sha256(json.dumps([repr(declarations.clock), read, bound, beside, labels, integrity]))
 
@@ -201,6 +208,10 @@ def _described(recording: Recording) -> tuple[dict[str, Any], list[Array]]:
     for topic, each in recording.late.items():
         late[topic] = len(arrays)
         arrays += [each.firsts, each.lasts]
+    agents = {}
+    for name, trace in recording.agents.items():
+        agents[name] = [len(arrays), [astuple(each) for each in trace.states], trace.actions]
+        arrays.append(trace.times)
     return {
         "name": recording.name,
         "sha256": recording.sha256,
@@ -216,6 +227,7 @@ def _described(recording: Recording) -> tuple[dict[str, Any], list[Array]]:
         "described": dict(recording.described),
         "origin": recording.origin,
         "late": late,
+        "agents": agents,
     }, arrays
 
 
@@ -247,6 +259,18 @@ def _recording(
         beside=beside,
         origin=about["origin"],
         late={topic: Late(arrays[at], arrays[at + 1]) for topic, at in about["late"].items()},
+        agents={
+            name: _agent(arrays[at], states, actions)
+            for name, (at, states, actions) in about["agents"].items()
+        },
+    )
+
+
+def _agent(times: Array, states: Sequence[Any], actions: Sequence[Any]) -> AgentTrace:
+    return AgentTrace(
+        times,
+        tuple(MentalState(ns, tuple(beliefs), tuple(goals)) for ns, beliefs, goals in states),
+        tuple((ns, action) for ns, action in actions),
     )
 
 

@@ -23,6 +23,7 @@ from fretish.bindings.constants import called, computed, quantity, whole_exponen
 from fretish.classes.frozen import dataclass
 from fretish.expressions import MIRRORED
 from fretish.units import ONE, Unit
+from monitors.rounded_functions import ROUNDED_FUNCTIONS
 
 COMPARE: dict[str, Callable[..., NDArray[np.bool_]]] = {
     "<": np.less,
@@ -96,7 +97,8 @@ def term(expression: e.Expression, scope: NameValues) -> Term:
 
     What divides by zero is unknown. Infinity is a number: `1 / inf` is 0, `inf - inf` unknown.
     Constants are computed exactly, everything else in 64-bit floats; what has not been computed
-    (`x`, `-x`, `abs(x)`, `min(x, y)`) stays as it was recorded. `x mod y` has the sign of `y`.
+    (`x`, `-x`, `abs(x)`, `min(x, y)`) stays as it was recorded. `x mod y` has the sign of `y`. The
+    functions of computed signals have arguments and results in base units.
 
     Raises:
         ExpressionError: the expression is a truth value, or names what the scope does not hold.
@@ -118,6 +120,11 @@ def term(expression: e.Expression, scope: NameValues) -> Term:
             return _arithmetic(op, term(left, scope), term(right, scope))
         case e.Call("pre", (initial, arg), _):
             return _before(initial, arg, scope)
+        case e.Call(name, args) if name in ROUNDED_FUNCTIONS:
+            return _rounded(name, [term(arg, scope) for arg in args])
+        case e.Calculation(_, value, is_rounded):
+            number = term(value, scope)
+            return Measure(_measure(number).base) if is_rounded else number
         case e.Call(name, args, _):
             return _call(name, [term(arg, scope) for arg in args])
         case e.Word(text):
@@ -282,6 +289,32 @@ def _call(name: str, args: Sequence[Term]) -> Term:
             return reduce(lambda x, y: _end(np.maximum, x, y), args)
         case _:
             raise ExpressionError(f"bindings have no `{name}` of {len(args)} numbers")
+
+
+def _rounded(name: str, args: Sequence[Term]) -> Measure:
+    """A function of `monitors/rounded_functions.py`, with its very results."""
+    columns = np.broadcast_arrays(*(_measure(arg).base for arg in args))
+    if name in _OF_ARRAYS:
+        with np.errstate(all="ignore"):
+            return Measure(np.asarray(_OF_ARRAYS[name](*columns), np.float64))
+    function = ROUNDED_FUNCTIONS[name]
+    rows = zip(*(column.tolist() for column in columns), strict=True)
+    return Measure(np.array([function(*row) for row in rows], np.float64))
+
+
+def _norm(*columns: Numbers) -> Numbers:
+    return np.asarray(np.sqrt(reduce(np.add, (column * column for column in columns))))
+
+
+_OF_ARRAYS: Mapping[str, Callable[..., NDArray[Any]]] = {
+    "sqrt": np.sqrt,
+    "hypot": _norm,
+    "norm": _norm,
+    "sign": np.sign,
+    "floor": np.floor,
+    "ceil": np.ceil,
+}
+"""The functions whose result IEEE 754 defines to the last bit; the others are left to Python."""
 
 
 def _end(function: np.ufunc, left: Term, right: Term) -> Term:

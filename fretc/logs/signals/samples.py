@@ -172,6 +172,27 @@ class Late:
 
 
 @dataclass(frozen=True, slots=True)
+class MentalState:
+    """What an agent believes and pursues from a time on, by names in alphabetical order."""
+
+    ns: int
+    beliefs: tuple[str, ...]
+    goals: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class AgentTrace:
+    """What an agent has reported of itself, in order of time; times are nanoseconds."""
+
+    times: Times
+    """Of all reports, shape (n,)."""
+    states: tuple[MentalState, ...]
+    """The first report, and each that differs from the one before."""
+    actions: tuple[tuple[int, str], ...]
+    """Time and name of each action."""
+
+
+@dataclass(frozen=True, slots=True)
 class Recording:
     """The declared signals in one log.
 
@@ -205,6 +226,8 @@ class Recording:
     """
     late: Mapping[str, Late] = field(default_factory=dict)
     """For each topic, its late messages, if the clock declares a lateness."""
+    agents: Mapping[str, AgentTrace] = field(default_factory=dict)
+    """What agents have reported, by their names; no verdict depends on it."""
     derived: dict[tuple[object, ...], Any] = field(
         default_factory=dict, init=False, compare=False, repr=False
     )

@@ -64,6 +64,8 @@ class OpenLog:
     beginning: Callable[[], OpenLog | None] = lambda: None
     """A copy of the bytes that were there when the file was opened; None: it has changed otherwise
     than by growing."""
+    episode: int | None = None
+    """The run of a table that holds several; None: the whole file is one."""
 
 
 @contextmanager

@@ -12,7 +12,7 @@ import re
 import shlex
 from urllib.parse import parse_qsl, urlencode, urlsplit, urlunsplit
 
-LOGS = (".mcap", ".bag", ".db3", ".ulg")
+LOGS = (".mcap", ".bag", ".db3", ".ulg", ".BIN")
 """Suffixes of files that are nothing but logs."""
 TEXT_TABLES = (".csv", ".tsv", ".jsonl", ".ndjson")
 TABLES = (*TEXT_TABLES, ".parquet", ".feather", ".arrow")

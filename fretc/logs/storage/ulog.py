@@ -17,16 +17,14 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
-from mcap.records import Channel, Schema
 from numpy.typing import NDArray
 
-from fretc.logs.mcap.container import ChannelDefinition
 from fretc.logs.mcap.damage import LATEST, Damage
-from fretc.logs.mcap.messages import Messages, Sink
-from fretc.logs.mcap.payloads import SPARE
+from fretc.logs.mcap.messages import Sink
 from fretc.logs.signals.samples import Gap
 from fretc.logs.storage.bags import NOWHERE
 from fretc.logs.storage.inputs import OpenLog
+from fretc.logs.storage.packed_topics import PackedField, PackedTopic, packed_topic
 from fretc.logs.storage.parts import FileContents
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -43,7 +41,6 @@ _TYPES = {
     "double": ("float64", "<f8"), "bool": ("bool", "u1"),
 }  # fmt: skip
 """The types of fields, each with ROS's and NumPy's name of it."""
-_HEAD = [("channel", "<u2"), ("sequence", "<u4"), ("log", "<u8"), ("publish", "<u8")]
 _RECORD = struct.Struct("<HB")
 _FIRST_RECORD = 16
 """Bytes of the file's head."""
@@ -80,7 +77,6 @@ def read(log: OpenLog, sink: Sink, span: Span) -> FileContents | Diagnostic:
     if int(times[-1]) >= LATEST:
         return diagnostic("bad_ulog", span, why="a message has an impossible time")
     for topic in topics:
-        sink.declare(topic.stream)
         topic.pass_to(sink)
     whole = int(times[0]), int(times[-1])
     damages = (*_dropouts(parsed, times), *_damages(parsed, content, whole))
@@ -88,45 +84,23 @@ def read(log: OpenLog, sink: Sink, span: Span) -> FileContents | Diagnostic:
     return FileContents(log.sha256(), log.size, whole, damages, (note,))
 
 
-@dataclass(frozen=True, slots=True)
-class _Topic:
-    """The messages of one topic."""
-
-    stream: ChannelDefinition
-    rows: NDArray[np.void]
-    """Shape (n,): the head and the fields of each message."""
-    times: NDArray[np.int64]
-    """Shape (n,): nanoseconds."""
-
-    def pass_to(self, sink: Sink) -> None:
-        """Give all messages to a sink."""
-        size = self.rows.dtype.itemsize
-        data = np.concatenate([self.rows.view(np.uint8).ravel(), np.zeros(SPARE, np.uint8)])
-        starts = np.arange(len(self.rows), dtype=np.int64) * size
-        sink.add_all(self.stream, Messages.at(data, starts, starts + size))
-
-
-def _topic(number: int, data: Any, parsed: Any) -> _Topic:
+def _topic(number: int, data: Any, parsed: Any) -> PackedTopic:
     """The messages of a topic.
 
     Raises:
         KeyError: a field has no values.
     """
-    fields = list(_fields(data.name, "", "", parsed.message_formats))
-    text = "".join(f"{field.type} {field.name}\n" for field in fields)
-    flat = [(name, field.kind) for field in fields for name in field.values]
-    kinds = [(f"f{i}", kind) for i, (_, kind) in enumerate(flat)]
-    rows = np.zeros(len(data.data["timestamp"]), np.dtype([*_HEAD, *kinds]))
-    for (name, _), (own, _) in zip(flat, kinds, strict=True):
-        rows[own] = data.data[name].view("u1") if rows[own].dtype == np.uint8 else data.data[name]
+    fields = [
+        PackedField(
+            field.name, field.type, [data.data[name].view(field.kind) for name in field.values]
+        )
+        for field in _fields(data.name, "", "", parsed.message_formats)
+    ]
     stamps = data.data["timestamp"]
     times = np.minimum(stamps, np.uint64(LATEST // _MICROSECOND + 1)).astype(np.int64)
     times *= _MICROSECOND
-    rows["channel"], rows["log"], rows["publish"] = number, times, times
     topic = f"/{data.name}" if data.multi_id == 0 else f"/{data.name}/instance_{data.multi_id}"
-    channel = Channel(number, topic, "ros1", {}, number)
-    schema = Schema(number, text.encode(), "ros1msg", f"ulog/{data.name}")
-    return _Topic(ChannelDefinition(channel, schema), rows, times)
+    return packed_topic(number, topic, f"ulog/{data.name}", fields, times)
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import dataclasses
 import io
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import chain
 
 from mcap.records import Channel
@@ -21,7 +21,7 @@ from fretc.logs.signals.samples import Gap
 from fretc.logs.storage.bags import NOWHERE
 from fretc.logs.storage.inputs import OpenLog
 from fretc.logs.storage.parts import FileContents
-from fretc.logs.tables.arrow_rows import arrow_rows
+from fretc.logs.tables.arrow_rows import EPISODE, arrow_rows
 from fretc.logs.tables.rows import Row, as_json, csv_rows, json_rows
 from fretc.logs.tables.time_column import UNITS, TimeColumn, time_column
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -32,8 +32,6 @@ from fretish.diagnostics.source import Span
 _DELIMITERS = {".csv": ",", ".tsv": "\t"}
 """The delimiter of the cells by the suffix; other tables have a JSON object on each line."""
 TOPIC = "/table"
-_EPISODE = "episode_index"
-"""LeRobot's name of the column that tells the runs of a file apart."""
 _LONG_NAMES = {"name", "signal", "variable", "key", "topic", "field", "series"}
 """Names of the column that names what a row of the long form measures."""
 
@@ -62,7 +60,7 @@ def read(log: OpenLog, sink: Sink, span: Span, suffix: str) -> FileContents | Di
 def read_arrow(log: OpenLog, sink: Sink, span: Span) -> FileContents | Diagnostic:
     """Pass the rows of a Parquet or Arrow file to a sink; or say why it cannot be read."""
     try:
-        units, rows = arrow_rows(log.stream, log.size)
+        units, rows = arrow_rows(log.stream, log.size, log.episode)
     except ModuleNotFoundError:
         return missing_extra("this table cannot be read: that needs", ["pyarrow"], "parquet", span)
     except Exception as error:  # the reader trusts each byte, and each may be wrong
@@ -103,8 +101,9 @@ def _read(
     table = _Table(head.texts, column, sink)
     for each in chain([first] if first.reason else [], [row], rows):
         table.add(each)
-        if table.episodes > 1:
-            return diagnostic("several_episodes", span)
+        if len(table.episodes) > 1:
+            least = min(table.episodes)
+            return diagnostic("several_episodes", span, path=span.source.name, episode=least)
     if table.span is None:
         return diagnostic("table_without_rows", span)
     note = diagnostic(
@@ -145,13 +144,13 @@ class _Table:
         self._long = (names[0], by_name["value"]) if is_long else None
         self._gaps: list[_Loss] = []
         self._last: int | None = None
-        self._episode = columns.index(_EPISODE) if _EPISODE in columns else None
+        self._episode = columns.index(EPISODE) if EPISODE in columns else None
         self._episodes: set[str] = set()
 
     @property
-    def episodes(self) -> int:
-        """The number of different runs that the rows name."""
-        return len(self._episodes)
+    def episodes(self) -> Collection[str]:
+        """The different runs that the rows name."""
+        return self._episodes
 
     def add(self, row: Row) -> None:
         """One row."""

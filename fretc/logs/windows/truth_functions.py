@@ -21,6 +21,7 @@ from fretish.bindings.constants import whole_exponent
 from fretish.classes.frozen import dataclass
 from fretish.expressions import COMPARE, MIRRORED
 from monitors.loading import executed
+from monitors.rounded_functions import ROUNDED_FUNCTIONS
 
 Kind = np.dtype[Any]
 """A type of 32-bit or 64-bit floats."""
@@ -29,6 +30,8 @@ TruthFunction = Callable[..., list[int]]
 states of each `... for 200 ms`."""
 
 _SINGLE, _DOUBLE = np.dtype(np.float32), np.dtype(np.float64)
+_PREFIX = "rounded_"
+"""The names of the functions of computed signals begin with it."""
 _OPERATORS = {"=": "=="}
 """The operators that Python writes differently."""
 
@@ -89,6 +92,7 @@ def _function(writer: _Writer, state: str) -> TruthFunction:
     text = _TEXT.format(columns=columns, elements=elements, state=state)
     module = executed(text, "truth_function")
     vars(module).update(writer.constants, nan=float("nan"), least=_least, greatest=_greatest)
+    vars(module).update({_PREFIX + name: each for name, each in ROUNDED_FUNCTIONS.items()})
     function: TruthFunction = module.states
     return function
 
@@ -220,6 +224,14 @@ class _Writer:
             case e.Call("min" | "max" as name, args, _):
                 function = "least" if name == "min" else "greatest"
                 return reduce(lambda x, y: self._end(function, x, y), map(self._number, args))
+            case e.Call(name, args, _) if name in ROUNDED_FUNCTIONS:
+                texts = ", ".join(self._base(self._measured(self._number(arg))) for arg in args)
+                return _Measured(f"{_PREFIX}{name}({texts})", _DOUBLE)
+            case e.Calculation(_, value, is_rounded):
+                number = self._number(value)
+                if not is_rounded:
+                    return number
+                return _Measured(self._base(self._measured(number)), _DOUBLE)
             case _:
                 raise NoFunctionError("the expression is not a number of single points")
 

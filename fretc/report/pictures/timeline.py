@@ -122,10 +122,20 @@ def cause(
     ages: Mapping[str, float],
     requirement: FormalizedRequirement | None = None,
 ) -> str:
-    """The cause of a violation: the missing response, and why it was missing.
+    """The cause of a violation: the missing response, why it was missing, what agents believed.
 
-    If the evidence leaves that open, the values of the signals at that tick.
+    If the evidence leaves the reason open, the values of the signals at that tick.
     """
+    believed = (f"{belief.in_words()}." for belief in violation.beliefs or ())
+    return " ".join([_cause(violation, result, ages, requirement), *believed])
+
+
+def _cause(
+    violation: Violation,
+    result: Result,
+    ages: Mapping[str, float],
+    requirement: FormalizedRequirement | None,
+) -> str:
     what = falsity(violation, result, requirement) or _missing(violation, result)
     at = seconds(violation.first.seconds)
     reasons = causes(violation, result, requirement)

@@ -37,7 +37,7 @@ from fretc.report.sections.results import reasons, result_rows
 from fretc.report.sections.reviews import review, waiver
 from fretc.report.sections.runs import AuditedFile, RunKey
 from fretc.traceability.artefacts import Product
-from fretish.bindings.declarations import Declarations, Proposition, Signal
+from fretish.bindings.declarations import ComputedSignal, Declarations, Proposition, Signal
 from fretish.clock import Clock
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.meaning import meaning
@@ -251,7 +251,10 @@ def _proposition(name: str, declared: Declarations | None) -> PropositionView:
         text=bound.text,
         expression=_expression(declared, bound),
         properties=_properties(bound),
-        signals=tuple(_signal(declared.signals[signal]) for signal in bound.signals),
+        signals=(
+            *(_signal(declared.signals[signal]) for signal in bound.signals),
+            *(_computed(declared.computed[signal]) for signal in bound.calculations),
+        ),
     )
 
 
@@ -274,6 +277,16 @@ def _properties(bound: Proposition) -> str:
     unknown = "unknown" if bound.on_unknown is None else str(bound.on_unknown).lower()
     parts = [str(bound.role), *([bound.kind] if bound.kind else [])]
     return f"{', '.join(parts)}; value of a tick: {bound.aggregate}; if unknown: {unknown}"
+
+
+def _computed(signal: ComputedSignal) -> SignalView:
+    return SignalView(
+        signal.name,
+        signal.text,
+        "computed",
+        signal.unit_name or "1",
+        "from the values of its signals at the same instant",
+    )
 
 
 def _signal(signal: Signal) -> SignalView:

@@ -1,4 +1,4 @@
-"""The tables `[action.NAME]` of `bindings.toml`: what an action of an agent publishes."""
+"""The tables of an agent: `[action.NAME]` and `[call.NAME]`, what its actions do; `[agent]`."""
 
 from __future__ import annotations
 
@@ -8,23 +8,29 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from fretish.bindings.declarations import ActionBinding, short_type
+from fretish import units
+from fretish.bindings.declarations import ActionBinding, ServiceCall, short_type
 from fretish.bindings.tables.fields import ACTION, Fields
 from fretish.bindings.tables.interceptor import TOPIC
 from fretish.diagnostics.messages import diagnostic
 
 ROS_TYPE = re.compile(r"(?P<package>[a-z]\w*)/(?P<message>[A-Z]\w*)", re.ASCII)
 """A message type without `msg`, as in ROS 1."""
-_FIELDS = ("topic", "type", "message")
+FIELDS = ("topic", "type", "message")
+CALL_FIELDS = ("service", "type", "request", "limit")
+AGENT_FIELDS = ("trace",)
+_LIMIT, _LONGEST = 400_000_000, 60_000_000_000
+"""Nanoseconds, the default and the most; a stop is requested after 500 ms without perception."""
 _EXAMPLES = {
     "topic": '"/gwendolen_control"',
     "type": '"std_msgs/Bool"',
     "message": "{ data = true }",
 }
+_CALL_EXAMPLES = {"service": '"/gripper/close"', "type": '"std_srvs/Trigger"'}
 
 
 class ActionTables(Fields):
-    """Reader of the tables `[action.NAME]`."""
+    """Reader of the tables `[action.NAME]`, `[call.NAME]` and `[agent]`."""
 
     def actions(self) -> dict[str, ActionBinding]:
         """Name of the action → its message; those with errors are left out."""
@@ -36,22 +42,25 @@ class ActionTables(Fields):
         self._check_types(bound)
         return bound
 
+    def trace(self) -> str | None:
+        """The topic of the trace; None if the table is absent or has errors."""
+        table = self.tables.data.get("agent")
+        if table is None:
+            return None
+        if not isinstance(table, dict):
+            self._say(diagnostic("agent_not_table", self.tables.place("agent")))
+            return None
+        self._check_keys(table, AGENT_FIELDS, "[agent]", "agent")
+        topic = table.get("trace")
+        if isinstance(topic, str) and TOPIC.fullmatch(topic) and topic.startswith("/"):
+            return topic
+        where = self.tables.value("agent", "trace") if "trace" in table else None
+        self._say(diagnostic("bad_agent_trace", where or self.tables.place("agent")))
+        return None
+
     def _binding(self, name: str, table: Mapping[str, Any]) -> ActionBinding | None:
         before, at = len(self.notes.diagnostics), ("action", name)
-        self._check_keys(table, _FIELDS, f"[action.{name}]", *at)
-        if ACTION.fullmatch(name) is None:
-            self._say(diagnostic("bad_action_name", self.tables.place(*at), name=name))
-        for key in _FIELDS:
-            if key not in table:
-                self._say(
-                    diagnostic(
-                        "interceptor_field_missing",
-                        self.tables.place(*at),
-                        table=f"action.{name}",
-                        key=key,
-                        example=_EXAMPLES[key],
-                    )
-                )
+        self._check_action(table, at, FIELDS, _EXAMPLES)
         topic, kind, message = (
             self._field(table, (*at, "topic"), str, "a topic in quotes") or "/topic",
             self._field(table, (*at, "type"), str, "a ROS type in quotes") or "std_msgs/Bool",
@@ -67,6 +76,74 @@ class ActionTables(Fields):
             return None
         text = json.dumps(message, separators=(",", ":"))
         return ActionBinding(name, topic, short_type(kind), text, self.tables.place(*at))
+
+    def _check_action(
+        self,
+        table: Mapping[str, Any],
+        at: tuple[str, str],
+        fields: tuple[str, ...],
+        required: Mapping[str, str],
+    ) -> None:
+        """Report a name that is none, fields that are unknown, and fields that are missing.
+
+        Args:
+            table: of one action.
+            at: its place.
+            fields: those that it may have.
+            required: field → an example.
+        """
+        where = ".".join(at)
+        self._check_keys(table, fields, f"[{where}]", *at)
+        if ACTION.fullmatch(at[1]) is None:
+            self._say(diagnostic("bad_action_name", self.tables.place(*at), kind=at[0], name=at[1]))
+        for key, example in required.items():
+            if key not in table:
+                self._say(
+                    diagnostic(
+                        "interceptor_field_missing",
+                        self.tables.place(*at),
+                        table=where,
+                        key=key,
+                        example=example,
+                    )
+                )
+
+    def calls(self) -> dict[str, ServiceCall]:
+        """Name of the action → its service; those with errors are left out."""
+        bound = {name: self._call(name, table) for name, table in self._tables("call").items()}
+        return {name: call for name, call in bound.items() if call is not None}
+
+    def _call(self, name: str, table: Mapping[str, Any]) -> ServiceCall | None:
+        before, at = len(self.notes.diagnostics), ("call", name)
+        self._check_action(table, at, CALL_FIELDS, _CALL_EXAMPLES)
+        if name in self._tables("action"):
+            self._say(diagnostic("action_publishes_and_calls", self.tables.place(*at), action=name))
+        service, kind, request = (
+            self._field(table, (*at, "service"), str, "a service in quotes") or "/service",
+            self._field(table, (*at, "type"), str, "a ROS type in quotes") or "std_srvs/Empty",
+            self._field(table, (*at, "request"), dict, "a table: `{ data = true }`") or {},
+        )
+        if TOPIC.fullmatch(service) is None or service.startswith("~"):
+            where = self.tables.value(*at, "service")
+            self._say(diagnostic("interceptor_topic", where, key="service"))
+        kind = kind.replace("/srv/", "/")
+        if ROS_TYPE.fullmatch(kind) is None:
+            self._say(diagnostic("bad_action_type", self.tables.value(*at, "type"), type=kind))
+        if not _is_message(request):
+            self._say(diagnostic("bad_action_message", self.tables.value(*at, "request")))
+        limit = self._limit(table, at)
+        if len(self.notes.diagnostics) > before:
+            return None
+        text = json.dumps(request, separators=(",", ":"))
+        return ServiceCall(name, service, kind, text, limit, self.tables.place(*at))
+
+    def _limit(self, table: Mapping[str, Any], at: tuple[str, str]) -> int:
+        text = table.get("limit", "400 ms")
+        duration = units.nanoseconds(text) if isinstance(text, str) else None
+        if duration is None or not 0 < duration <= _LONGEST:
+            self._say(diagnostic("bad_call_limit", self.tables.value(*at, "limit")))
+            return _LIMIT
+        return duration
 
     def _check_types(self, bound: Mapping[str, ActionBinding]) -> None:
         """Report each topic with two types."""

@@ -16,7 +16,7 @@ _TOPIC = re.compile(r"[A-Za-z_~/]\S*")
 """A topic; a duration would begin with a digit."""
 _MOST_LATENESS = 60 * 10**9
 """Nanoseconds; a watch must give its verdicts within this time."""
-_CLOCK = ("time", "tick", "phase", "lateness", "end", "rounding")
+FIELDS = ("time", "tick", "phase", "lateness", "end", "rounding")
 
 
 class ClockTable(Fields):
@@ -30,7 +30,7 @@ class ClockTable(Fields):
         if not isinstance(table, dict):
             self._say(diagnostic("clock_missing", self.tables.text.part(0, 0)))
             return Clock(10**9)
-        self._check_keys(table, _CLOCK, "[clock]", "clock")
+        self._check_keys(table, FIELDS, "[clock]", "clock")
         for name, default in (("time", TimeSource.LOG_TIME), ("end", End.INCONCLUSIVE)):
             if table.get(name, default) == default:
                 text = f"clock: {name} is {default}, the default"

@@ -12,7 +12,7 @@ from fretish.bindings.tables.fields import Fields, Notes
 from fretish.diagnostics.messages import diagnostic
 from fretish.reading.toml_text import Tables
 
-_MAP = ("x", "y")
+FIELDS = ("x", "y")
 
 
 class MapTable(Fields):
@@ -31,7 +31,7 @@ class MapTable(Fields):
         if not isinstance(table, dict):
             self._say(diagnostic("map_not_table", self.tables.place("map")))
             return None
-        self._check_keys(table, _MAP, "[map]", "map")
+        self._check_keys(table, FIELDS, "[map]", "map")
         x, y = self._coordinate(table, "x"), self._coordinate(table, "y")
         return MapCoordinates(x, y) if x is not None and y is not None else None
 

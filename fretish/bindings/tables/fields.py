@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 from fretish import expressions as e
 from fretish.bindings import expressions as binding
 from fretish.bindings.declarations import Default, Modality, Part
+from fretish.bindings.functions import OF_VALUES
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.messages import diagnostic
@@ -113,6 +114,16 @@ class Fields:
             self.notes.diagnostics.append(parsed)
             return None
         return parsed
+
+    def _calls_function_of_values(self, expression: e.Expression, place: Span) -> bool:
+        """Whether an expression that is no value of a signal calls such a function: F308."""
+        for part in e.parts(expression):
+            if isinstance(part, e.Call) and part.name in OF_VALUES:
+                form = OF_VALUES[part.name].form
+                span = part.span or place
+                self._say(diagnostic("function_of_values", span, name=part.name, form=form))
+                return True
+        return False
 
     def _inside(self, at: tuple[str, ...], text: str) -> Span:
         """The span between the quotes, so that diagnostics refer to the file."""

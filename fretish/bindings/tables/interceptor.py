@@ -36,8 +36,8 @@ scan_timeout = "500 ms"             # and after this silence of the sensor
 _TOPICS = ("stop", "command", "output", "scan")
 _TIMES = ("hold", "stop_timeout", "scan_timeout", "command_timeout")
 _OPTIONAL = (*_TIMES, "heartbeat")
-_INTERCEPTOR = (*_TOPICS, "period", *_TIMES, "form", "latching", "ros")
-_ASSUME = ("stands", "latency", "lost", "requests", "heartbeat", "planner", "braking")
+FIELDS = (*_TOPICS, "period", *_TIMES, "form", "latching", "ros")
+ASSUMED_FIELDS = ("stands", "latency", "lost", "requests", "heartbeat", "planner", "braking")
 _SENTENCES = "requirement"
 """The key of the tables `[[assume.requirement]]`."""
 _SENTENCE = ("id", "text", "sentence")
@@ -58,7 +58,7 @@ class InterceptorTables(Fields):
         if table is None:
             return None
         before = len(self.notes.diagnostics)
-        self._check_keys(table, _INTERCEPTOR, "[interceptor]", "interceptor")
+        self._check_keys(table, FIELDS, "[interceptor]", "interceptor")
         topics = {key: self._topic(table, key) for key in _TOPICS}
         at = ("interceptor", "form")
         form = self._choice(table, at, InterceptorForm, InterceptorForm.TIMER)
@@ -95,7 +95,7 @@ class InterceptorTables(Fields):
         if table is None or table.keys() == {_SENTENCES}:
             return None
         before = len(self.notes.diagnostics)
-        self._check_keys(table, (*_ASSUME, _SENTENCES), "[assume]", "assume")
+        self._check_keys(table, (*ASSUMED_FIELDS, _SENTENCES), "[assume]", "assume")
         stands = self._stands(table, propositions)
         latency = self._needed(table, "latency", "100 ms")
         braking = self._needed(table, "braking", "200 ms")

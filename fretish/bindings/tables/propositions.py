@@ -8,29 +8,45 @@ from typing import Any
 from fretish import expressions as e
 from fretish import units
 from fretish.bindings import expressions as binding
-from fretish.bindings.declarations import Aggregate, Default, Proposition, Role, Signal
+from fretish.bindings.calculations import with_calculations
+from fretish.bindings.declarations import (
+    Aggregate,
+    ComputedSignal,
+    Default,
+    MeasuredSignal,
+    Proposition,
+    Role,
+    Signal,
+)
 from fretish.bindings.tables.fields import Fields, Notes
 from fretish.bindings.words import resolve_words
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.reading.toml_text import Tables
 
-_PROPOSITION = ("text", "expr", "role", "agg", "on_unknown", "kind", "modality", "action")
-_KINDS = ("belief", "command", "physical")
+FIELDS = ("text", "expr", "role", "agg", "on_unknown", "kind", "modality", "action")
+KINDS = ("belief", "command", "physical")
 
 
 class PropositionTables(Fields):
     """Reader of the tables `[proposition.NAME]`."""
 
-    def __init__(self, tables: Tables, notes: Notes, signals: Mapping[str, Signal]) -> None:
-        """`signals`: all signals with a known unit or with words."""
+    def __init__(
+        self,
+        tables: Tables,
+        notes: Notes,
+        signals: Mapping[str, Signal],
+        computed: Mapping[str, ComputedSignal],
+    ) -> None:
+        """`signals`: all recorded signals with a known unit or with words."""
         super().__init__(tables, notes)
-        self._signals = signals
+        self._signals: Mapping[str, MeasuredSignal] = {**signals, **computed}
+        self._computed = computed
 
     def proposition(self, name: str, table: Mapping[str, Any]) -> Proposition | None:
         """The proposition; None if it has errors that make it unusable."""
         at = ("proposition", name)
-        self._check_keys(table, _PROPOSITION, f"[proposition.{name}]", *at)
+        self._check_keys(table, FIELDS, f"[proposition.{name}]", *at)
         if "expr" not in table:
             self._say(diagnostic("expression_missing", self.tables.place(*at), name=name))
         written = self._expression(table, (*at, "expr"))
@@ -67,6 +83,8 @@ class PropositionTables(Fields):
         unknown = self._tables("signal").keys() - self._signals.keys()
         if any(name.id in unknown for name in e.names(written)):
             return None  # The signal already has a diagnostic.
+        if self._calls_function_of_values(written, span):
+            return None
         expression = resolve_words(written, self._signals, span)
         if isinstance(expression, Diagnostic):
             self.notes.diagnostics.append(expression)
@@ -83,7 +101,7 @@ class PropositionTables(Fields):
             known = {name.id: self._signals.get(name.id) for name in e.names(expression)}
             percents = {n for n, each in known.items() if each and each.unit == units.PERCENT}
             self.notes.diagnostics.extend(binding.plain_percents(expression, percents, span))
-        return expression if kind is None else None
+        return with_calculations(expression, self._computed) if kind is None else None
 
     def _ticks_fit(
         self, table: Mapping[str, Any], expression: e.Expression, at: tuple[str, ...]
@@ -105,13 +123,13 @@ class PropositionTables(Fields):
 
     def _kind(self, table: Mapping[str, Any], at: tuple[str, ...]) -> str:
         kind = table.get("kind", "")
-        if kind not in (*_KINDS, ""):
+        if kind not in (*KINDS, ""):
             self._say(
                 diagnostic(
                     "unknown_kind",
                     self.tables.value(*at, "kind"),
                     kind=kind,
-                    kinds=", ".join(_KINDS),
+                    kinds=", ".join(KINDS),
                 )
             )
         return str(kind)

@@ -5,9 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
-from fretish.bindings.declarations import Declarations, LoopAssumptions, Part, Proposition, Signal
+from fretish.bindings.declarations import (
+    ComputedSignal,
+    Declarations,
+    LoopAssumptions,
+    Part,
+    Proposition,
+    Signal,
+)
 from fretish.bindings.tables.actions import ActionTables
 from fretish.bindings.tables.clock import ClockTable
+from fretish.bindings.tables.computed import ComputedTables
 from fretish.bindings.tables.coordinates import MapTable
 from fretish.bindings.tables.fields import Fields, Notes
 from fretish.bindings.tables.interceptor import InterceptorTables
@@ -20,10 +28,10 @@ from fretish.diagnostics.source import Source
 from fretish.reading.limits import with_budget
 from fretish.reading.toml_text import Tables, read
 
-_TABLES = ("clock", "signal", "proposition", "variable", "interceptor", "assume", "map", "run",
-           "action", "fret")  # fmt: skip
+FIELDS = ("clock", "signal", "proposition", "variable", "interceptor", "assume", "map", "run",
+           "action", "call", "agent", "fret")  # fmt: skip
 S = TypeVar("S")
-T = TypeVar("T", Signal, Proposition)
+T = TypeVar("T", Signal, ComputedSignal, Proposition)
 
 
 def read_bindings(source: Source) -> tuple[Declarations | None, tuple[Diagnostic, ...]]:
@@ -64,11 +72,20 @@ class _TablesReader(Fields):
 
     def declarations(self) -> Declarations:
         tables, notes = self.tables, self.notes
-        self._check_keys(tables.data, _TABLES, "the bindings")
+        self._check_keys(tables.data, FIELDS, "the bindings")
+        written = self._tables("signal")
         of_signals = SignalTables(tables, notes)
-        signals = self._parts("signal", of_signals.signal)
-        of_propositions = PropositionTables(tables, notes, of_signals.known)
-        propositions = self._parts("proposition", of_propositions.proposition)
+        recorded = {name: table for name, table in written.items() if "value" not in table}
+        signals = self._parts("signal", of_signals.signal, recorded)
+        of_computed = ComputedTables(tables, notes, of_signals.known)
+        ordered = of_computed.ordered(
+            {name: table for name, table in written.items() if "value" in table}
+        )
+        computed = self._parts("signal", of_computed.signal, ordered)
+        of_propositions = PropositionTables(tables, notes, of_signals.known, of_computed.known)
+        propositions = self._parts(
+            "proposition", of_propositions.proposition, self._tables("proposition")
+        )
         variables = VariableTables(tables, notes).variables()
         loop = InterceptorTables(tables, notes)
         return Declarations(
@@ -86,6 +103,9 @@ class _TablesReader(Fields):
             VariableTables(tables, notes).kept(),
             self._shared("environment", loop.sentences),
             self._shared("action", ActionTables(tables, notes).actions),
+            self._shared("call", ActionTables(tables, notes).calls),
+            self._shared("agent", ActionTables(tables, notes).trace),
+            computed,
         )
 
     def _shared(self, kind: str, read: Callable[[], S]) -> S:
@@ -101,10 +121,15 @@ class _TablesReader(Fields):
         self.errors_of_parts += len(own)
         self.notes.keep(part, own)
 
-    def _parts(self, kind: str, read: Callable[[str, Mapping[str, Any]], T | None]) -> dict[str, T]:
+    def _parts(
+        self,
+        kind: str,
+        read: Callable[[str, Mapping[str, Any]], T | None],
+        tables: Mapping[str, Mapping[str, Any]],
+    ) -> dict[str, T]:
         """Read the tables of one kind; those with errors are only in `mistakes`."""
         parts = {}
-        for name, table in self._tables(kind).items():
+        for name, table in tables.items():
             before = len(self.notes.diagnostics)
             part = read(name, table)
             self._keep((kind, name), before)

@@ -26,8 +26,8 @@ from fretish.bindings.tables.vocabulary import ValuesField
 from fretish.diagnostics.messages import diagnostic
 from fretish.reading.toml_text import Tables
 
-_SIGNAL = (
-    "path", "type", "reduce", "unit", "valid", "invalid", "max_age", "footprint", "sensor",
+FIELDS = (
+    "path", "value", "type", "reduce", "unit", "valid", "invalid", "max_age", "footprint", "sensor",
     "values", "role", "agg",
 )  # fmt: skip
 _OF_NUMBERS = ("unit", "valid", "invalid", "reduce", "footprint", "sensor")
@@ -52,7 +52,7 @@ class SignalTables(Fields):
     def signal(self, name: str, table: Mapping[str, Any]) -> Signal | None:
         """The signal; None if it has errors that make it unusable."""
         at = ("signal", name)
-        self._check_keys(table, _SIGNAL, f"[signal.{name}]", *at)
+        self._check_keys(table, FIELDS, f"[signal.{name}]", *at)
         where = self._path(table, (*at, "path"))
         if "values" in table:
             return self._enumerated(name, table, where)
@@ -129,6 +129,8 @@ class SignalTables(Fields):
             return None
         if binding.ticks_back(valid):
             self._say(diagnostic("pre_in_valid", self.tables.value(*at)))
+            return None
+        if self._calls_function_of_values(valid, self.tables.value(*at)):
             return None
         if any(isinstance(part, e.Word) for part in e.parts(valid)):
             self._say(diagnostic("word_in_valid", self.tables.value(*at)))

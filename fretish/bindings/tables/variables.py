@@ -17,7 +17,7 @@ from fretish.diagnostics.source import Span
 from fretish.parser import parse_value
 from fretish.reading.toml_text import as_key
 
-_VARIABLE = ("component", "type", "role", "text", "value", "fret", "of", "modality", "action")
+FIELDS = ("component", "type", "role", "text", "value", "fret", "of", "modality", "action")
 _OF_COMPONENT = ("type", "role", "text", "value", "fret")
 _FRET = ("variable",)
 _MOST_NAMES = 12
@@ -65,7 +65,7 @@ class VariableTables(Fields):
 
     def _variable(self, name: str, table: Mapping[str, Any]) -> Variable:
         at = ("variable", name)
-        self._check_keys(table, _VARIABLE, f"[variable.{name}]", *at)
+        self._check_keys(table, FIELDS, f"[variable.{name}]", *at)
         of = self._field(table, (*at, "of"), dict, "tables of components") or {}
         if not all(isinstance(own_table, dict) for own_table in of.values()):
             self._say(

@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 
 from compiler.files import text_files
-from compiler.files.text_files import read, write
+from compiler.files.text_files import is_file, read, unsaved_names, unsaved_texts, write
 from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.source import Source
 from tests.command import Fretc
 
 
@@ -131,3 +132,15 @@ def test_a_read_only_disk_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     found = write({tmp_path / "x": "y"})
     assert found is not None
     assert f"`{tmp_path / 'x'}` cannot be written: Read-only" in found.message
+
+
+def test_the_text_of_an_editor_hides_that_of_the_disk(tmp_path: Path) -> None:
+    file, new = tmp_path / "r.fret", tmp_path / "new.fret"
+    file.write_text("on the disk")
+    with unsaved_texts({str(file): "unsaved", str(new): "nowhere else"}):
+        assert read(str(file)) == Source(str(file), "unsaved")
+        assert is_file(new)
+        assert sorted(unsaved_names(str(tmp_path))) == ["new.fret", "r.fret"]
+    assert read(str(file)) == Source(str(file), "on the disk")
+    assert not is_file(new)
+    assert unsaved_names(str(tmp_path)) == []

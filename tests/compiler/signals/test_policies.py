@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -26,7 +27,11 @@ from tests.signal_policies import KINDS, SIGNS, audited_truth, signals, truth_of
 @given(st.data())
 def test_a_description_has_the_truth_that_the_audit_computes(data: st.DataObject) -> None:
     declared: dict[str, Signal] = {name: data.draw(signals(name)) for name in ("a", "b")}
-    tree = data.draw(truths_of(("a", "b")))
+    check(data.draw(truths_of(("a", "b"))), declared, data)
+
+
+def check(tree: e.Expression, declared: dict[str, Signal], data: st.DataObject) -> None:
+    """Check the truth of an expression for some numbers of its signals."""
     row: dict[str, Any] = {
         name: data.draw(st.sampled_from([*KINDS]).flatmap(KINDS.__getitem__)) for name in declared
     }
@@ -45,6 +50,44 @@ def test_a_description_has_the_truth_that_the_audit_computes(data: st.DataObject
 SIGNAL = Signal("a", Path("/t", ("f",)), ONE, "")
 A, B, C = map(e.Name, "abc")
 MIDDLE = e.Call("max", (e.Call("min", (A, C)), B))
+
+
+@pytest.mark.slow
+@examples(20)
+@given(st.data())
+def test_computed_signals_have_the_numbers_of_an_audit(data: st.DataObject) -> None:
+    declared: dict[str, Signal] = {name: data.draw(signals(name)) for name in ("a", "b")}
+    tree = data.draw(truths_of(("a", "b"), rounded=True))
+    check(tree, declared, data)
+
+
+def test_a_computed_signal_is_its_expression() -> None:
+    """So is each function that is printed for another language."""
+    value = e.Call("min", (e.Call("max", (A, B)), e.Quantity("3", "m")))
+    compared, inline = (
+        e.Comparison("<", e.Arithmetic("+", side, A), e.Quantity("2", "m"))
+        for side in (e.Calculation("v", value), value)
+    )
+    declared = [replace(SIGNAL, name=name) for name in "ab"]
+    for gives_rounded in (False, True):
+        one, other = (
+            meaning(Proposition("p", tree), declared, gives_rounded=gives_rounded)
+            for tree in (compared, inline)
+        )
+        assert one == other
+
+
+def test_the_caller_gives_what_a_rounded_function_computes() -> None:
+    root = e.Calculation("root", e.Call("sqrt", (A,)), True)
+    tree = e.Comparison("<", e.Calculation("v", e.Arithmetic("+", root, B)), e.Quantity("2", "m"))
+    declared = [replace(SIGNAL, name=name) for name in "ab"]
+    given_root = meaning(Proposition("p", tree), declared, gives_rounded=True)
+    total = n.Computed("plus", n.SignalValue("root"), n.SignalValue("b"))
+    assert given_root.truth == n.Comparison("<", total, n.Constant(Fraction(2)))
+    computed = meaning(Proposition("p", tree), declared)
+    call = n.RoundedCall("sqrt", (n.SignalValue("a"),))
+    total = n.Computed("plus", call, n.SignalValue("b"))
+    assert computed.truth == n.Comparison("<", total, n.Constant(Fraction(2)))
 
 
 @each("sign", SIGNS)

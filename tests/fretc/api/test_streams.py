@@ -16,6 +16,7 @@ from fretc.audit.one_log import audit
 from fretc.audit.plan import Plan, monitored_requirements, planned
 from fretc.logs.signals.samples import Recording, Samples, Topic
 from fretish.diagnostics.diagnostic import Code
+from fretish.diagnostics.rendering import render
 from tests.effort import FULL, some
 
 ROOT = Path(__file__).parent.parent.parent.parent
@@ -26,6 +27,7 @@ SENTENCES = (
     "upon p r shall for 2 ticks satisfy q",
     "whenever p r shall immediately satisfy x - preReal(2, x) <= limit | falling",
     "r shall always satisfy (x + 1) mod 3 < 2 & x ^ 2 <= 16",
+    "whenever p r shall within 1 tick satisfy wave < 7 & (wave > preReal(1, wave) | root > 1)",
 )
 BINDINGS = """
 [clock]
@@ -34,6 +36,10 @@ end = "{end}"
 [signal.x]
 path = "/x.data"
 max_age = "25 ns"
+[signal.wave]
+value = "norm(3, 2 * x) + sin(x * 1 rad)"
+[signal.root]
+value = "sqrt(x - 2)"
 [variable.limit]
 value = "2"
 [variable.falling]
@@ -171,6 +177,16 @@ def test_a_requirement_that_no_run_can_show_is_refused_and_not_left_out(
 def test_a_signal_that_is_not_declared_is_refused(project: fretc.Project) -> None:
     with pytest.raises(fretc.Refusal, match="F309 the bindings declare no signal `y`"):
         fretc.Stream(project).add("y", 1, 1.0)
+
+
+def test_a_sample_of_a_computed_signal_is_refused(project: fretc.Project) -> None:
+    with pytest.raises(fretc.Refusal) as refusal:
+        fretc.Stream(project).add("root", 1, 1.0)
+    (only,) = refusal.value.diagnostics
+    assert render(only) == (
+        "F309 `root` has no samples: it is computed, by `sqrt(x - 2)`\n"
+        "help: add samples of the signals that it reads"
+    )
 
 
 def test_the_former_name_of_the_statuses_of_a_tick_gives_them_with_a_warning(

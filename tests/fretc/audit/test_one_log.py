@@ -12,6 +12,7 @@ from compiler.situations.situations import situations
 from compiler.targets.python.monitor import text
 from fretc.audit.evidence.writer import RunResult, as_record
 from fretc.audit.one_log import MonitoredRequirement, audit, signals_of
+from fretc.logs.log_diagnostics import no_topic
 from fretc.logs.signals.samples import Recording, Samples
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.source import Source
@@ -127,6 +128,20 @@ def test_of_several_unknown_intervals_the_longest_is_told_with_the_number_of_tic
     assert audited(EVENTUALLY, log).reason.startswith(
         "unknown where it matters: `near` at 3 ticks; the longest: `near` from 3 s to 5 s (2 s): "
     )
+
+
+def test_an_error_about_a_signal_of_another_requirement_is_no_reason() -> None:
+    declared = declare(BINDINGS + '[signal.other]\npath = "/other.x"\n')
+    log = recorded([FAR, float("nan"), FAR], [MOVING, MOVING, STILL])
+
+    def reason(*signals: str) -> str:
+        spans = (declared.signals[name].span for name in signals)
+        errors = tuple(no_topic(f"/{span}", (), span) for span in spans)
+        return audited(EVENTUALLY, replace(log, findings=errors), declared).reason
+
+    assert reason("other") == reason()
+    own = declared.signals["v"].span
+    assert reason("other", "v") == f"the topic `/{own}` is not in the log"
 
 
 def test_a_stale_response_is_no_data_and_never_a_pass() -> None:

@@ -74,6 +74,10 @@ CHANGES: dict[str, tuple[Texts, set[str]]] = {
     "a new requirement": ({**PROJECT, "R5": "robot shall always satisfy near"}, {"R5"}),
     "a requirement less": ({k: v for k, v in PROJECT.items() if k != "R2"}, set()),
     "a topic less": ({k: v for k, v in PROJECT.items() if k != "R4"}, {"R1", "R2", "R3"}),
+    "the trace of agents": (
+        changed("bindings", "[clock]", '[agent]\ntrace = "/trace"\n[clock]'),
+        {"R1", "R2", "R3", "R4"},
+    ),
     "an unbound proposition": ({**PROJECT, "R5": "robot shall always satisfy what"}, set()),
     "what is unknown": (
         changed("bindings", '"y < 0.3 m"', '"y < 0.3 m"\non_unknown = false'),

@@ -1,8 +1,6 @@
 """A simulated mission whose safety function is the agent in MCAPL, and what becomes of faults."""
 
 import json
-import os
-import signal
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -14,12 +12,11 @@ from mcap_ros2.decoder import DecoderFactory
 from fretc.campaigns.agent import AgentLink, agent
 from fretc.campaigns.campaign import intercepted
 from fretc.campaigns.experiment import safety_function
-from fretish.system.processes import kill_all
 from simulation.mission import EPOCH, Mission, record
 from simulation.recording import TOPICS
-from simulation.world.scenario import Scenario, load
+from simulation.world.scenario import Scenario, load, names
 from tests.command import Fretc
-from tests.effort import full_only
+from tests.effort import FULL, full_only
 from tests.programs import mcapl, needs
 
 TYPES = {topic.name: topic.type for topic in TOPICS}
@@ -73,13 +70,22 @@ def test_an_agent_takes_part_in_no_campaign(fretc: Fretc) -> None:
     assert "--campaign cannot be combined with --png, --gif, --agent" in run.err
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("more", [("-o", "a.mcap"), ("--campaign", "1")])
+def test_a_fault_of_the_agent_needs_an_agent(fretc: Fretc, more: tuple[str, ...]) -> None:
+    run = fretc("simulate", "agent-killed", *more)
+    assert run.status == 2
+    assert "the scenario agent-killed needs --agent" in run.err
+    assert not Path("a.mcap").exists()
+
+
 @needs("java", "javac")
 @pytest.mark.slow
 def test_the_agent_stops_the_robot_when_the_monitor_does(
     scenario: Scenario, tmp_path: Path
 ) -> None:
     """R1's monitor may demand a second stop: until the robot stands, which the agent believes."""
-    with agent(scenario.safety.threshold, TYPES) as link:
+    with agent(scenario, TYPES) as link:
         run = mission(tmp_path / "agent.mcap", scenario, 20, link)
         assert link.speaks
     monitored = mission(tmp_path / "m.mcap", scenario, 20, safety_function(0.05))
@@ -99,7 +105,7 @@ def test_the_agent_stops_the_robot_when_the_monitor_does(
 def test_a_whole_mission_ends_as_with_the_monitor(
     scenario: Scenario, fretc: Fretc, tmp_path: Path
 ) -> None:
-    with agent(scenario.safety.threshold, TYPES) as link:
+    with agent(scenario, TYPES) as link:
         run = mission(tmp_path / "agent.mcap", scenario, None, link)
     monitored = mission(tmp_path / "monitor.mcap", scenario, None, safety_function(0.05))
     assert (run.goals_reached, run.contacts) == (monitored.goals_reached, monitored.contacts)
@@ -110,38 +116,22 @@ def test_a_whole_mission_ends_as_with_the_monitor(
 
 # Faults ----------------------------------------------------------------------------------------
 
-FAULT = 6.0
-"""Simulated seconds; the robot drives then."""
 STANDS = 1.2 + 0.1 + 0.4
 """Seconds until the robot stands: silence, two periods of the interceptor, braking."""
+FAULTS = tuple(name for name in names() if load(name).agent is not None)
+SILENT = ("killed", "frozen", "out-of-memory", "unreachable")
+HALTED = ("clock-ahead",)
+GOES_ON = ("paused", "reconnected", "scans-dropped", "scans-delayed")
+HARMLESS = ("scans-duplicated", "scans-reordered")
+SOME = ("agent-killed", "agent-scans-delayed")
+"""Those that are tried without the full profile."""
 
 
-class Faulty(AgentLink):
-    """An agent to which something happens."""
-
-    def __init__(self, link: AgentLink, fault: Any) -> None:
-        self.__dict__ = link.__dict__
-        self.fault, self.happened = fault, False
-
-    def step(self, time: int) -> bool:
-        if not self.happened and time - EPOCH >= FAULT * 1e9:
-            self.happened = True
-            self.fault(self)
-        return super().step(time)
-
-
-def killed(link: AgentLink) -> None:
-    kill_all(link.process)
-    link.process.wait()
-
-
-def frozen(link: AgentLink) -> None:
-    os.killpg(link.process.pid, signal.SIGSTOP)
-
-
-def unreachable(link: AgentLink) -> None:
-    assert link._endpoint is not None
-    link._endpoint.close()
+def faulty(monkeypatch: pytest.MonkeyPatch, out: Path, name: str) -> tuple[Mission, AgentLink]:
+    monkeypatch.setenv("AJPF_HOME", mcapl())
+    scenario = load(name)
+    with agent(scenario, TYPES) as link:
+        return mission(out, scenario, None, link), link
 
 
 def moved(path: Path) -> Sequence[float]:
@@ -153,24 +143,46 @@ def moved(path: Path) -> Sequence[float]:
     ]
 
 
+def test_each_fault_has_its_test() -> None:
+    names = {*SILENT, *HALTED, *GOES_ON, *HARMLESS, "clock-behind"}
+    assert {f"agent-{name}" for name in names} == {*FAULTS}
+    assert len(FAULTS) == 12
+
+
 @needs("java", "javac")
 @pytest.mark.slow
-@pytest.mark.parametrize("fault", [killed, frozen, unreachable])
-def test_without_the_agent_the_robot_stands_within_the_bound(
-    scenario: Scenario, tmp_path: Path, fault: Any
+@pytest.mark.parametrize("name", [*FAULTS] if FULL else SOME)
+def test_the_robot_stands_within_the_bound_or_the_fault_is_harmless(
+    monkeypatch: pytest.MonkeyPatch, fretc: Fretc, tmp_path: Path, name: str
 ) -> None:
-    path = tmp_path / "fault.mcap"
-    with agent(scenario.safety.threshold, TYPES) as link:
-        run = mission(path, scenario, 12, Faulty(link, fault))
-        assert not link.speaks
-        if fault is frozen:
-            os.killpg(link.process.pid, signal.SIGCONT)
+    path, kind = tmp_path / "fault.mcap", name.removeprefix("agent-")
+    run, link = faulty(monkeypatch, path, name)
+    fault = run.scenario.agent
+    assert fault is not None
+    begin, end = fault.at, fault.at + fault.seconds
     times = moved(path)
-    assert any(FAULT - 0.5 < time < FAULT for time in times)
-    assert max(times) < FAULT + STANDS
+    assert any(begin - 0.5 < time < begin for time in times)
     assert run.contacts == 0
-    said = [time for _, time, _ in messages(path, "/gwendolen_control")]
-    assert max(said) <= FAULT + 0.1
+    spoken = [time for _, time, _ in messages(path, "/gwendolen_control")]
+    if kind in (*SILENT, *HALTED):
+        assert max(times) < begin + STANDS
+        assert link.speaks is (kind in HALTED)
+    if kind in SILENT:
+        assert max(spoken) <= begin + 0.1
+    if kind in GOES_ON:
+        assert not any(begin + STANDS < time < end for time in times)
+    if kind in (*GOES_ON, *HARMLESS, "clock-behind"):
+        assert link.speaks
+        assert max(times) > run.duration - 10
+    if kind in HARMLESS:
+        first = min(at for at, is_stop in run.requests if is_stop)
+        assert 12 < first < 14, "the obstacle is at 12.7 s"
+    if kind == "clock-behind":
+        assert any(8.5 < time < 9 for time in times)
+        assert not any(9 + STANDS < time < 11 for time in times)
+    verdicts = audited(fretc, path)
+    stated = run.scenario.expect.verdicts
+    assert {id: verdicts[id] for id in stated} == stated
 
 
 @needs("java", "javac")
@@ -182,7 +194,7 @@ def test_verdicts_with_an_agent_are_those_that_the_scenario_states(
 ) -> None:
     monkeypatch.setenv("AJPF_HOME", mcapl())
     scenario = load(name)
-    with agent(scenario.safety.threshold, TYPES) as link:
+    with agent(scenario, TYPES) as link:
         mission(tmp_path / "a.mcap", scenario, None, link)
     verdicts = audited(fretc, tmp_path / "a.mcap")
     stated = scenario.expect.verdicts

@@ -14,7 +14,7 @@ from fretc.campaigns.campaign import (
     simulated,
     table,
 )
-from simulation.world.scenario import Scenario, load, names
+from simulation.world.scenario import Scenario, load, without_agent
 from tests.effort import FULL, some
 from tests.simulation.missions import Missions, cut_off
 
@@ -29,7 +29,7 @@ OF_THE_END = {"R9", "R10", "R11", "R12"}
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(1, SEEDS + 1))
-@pytest.mark.parametrize("name", names() if ALL else [WHOLE])
+@pytest.mark.parametrize("name", without_agent() if ALL else [WHOLE])
 def test_every_verdict_is_the_stated_one(
     missions: Missions, name: str, seed: int, tmp_path: Path
 ) -> None:
@@ -41,7 +41,7 @@ def test_every_verdict_is_the_stated_one(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", some(names(), 4))
+@pytest.mark.parametrize("name", some(without_agent(), 4))
 def test_when_the_fault_has_shown_all_is_as_stated_but_what_the_mission_comes_to(
     missions: Missions, name: str
 ) -> None:

@@ -59,6 +59,15 @@ SIGNALS: Mapping[str, tuple[Mapping[str, Any], Fields]] = {
         },
         {"sensor": ([0.1, 0.0, 0.0],), "type": ("sensor_msgs/LaserScan",)},
     ),
+    "pace": (
+        {"value": "2 * speed"},
+        {
+            "value": ("abs(speed) + 1 m/s", "hypot(speed, 1 m/s)", "clamp(speed, 0 m/s, 2 m/s)"),
+            "unit": ("cm/s", "m/s"),
+            "role": ROLES,
+            "agg": ("any", "all", "last"),
+        },
+    ),
 }
 PROPOSITIONS: Mapping[str, tuple[Mapping[str, Any], Fields]] = {
     "near": (
@@ -66,7 +75,7 @@ PROPOSITIONS: Mapping[str, tuple[Mapping[str, Any], Fields]] = {
         {
             "text": ("something is near: < 1 m",),
             "role": ROLES,
-            "kind": propositions._KINDS,
+            "kind": propositions.KINDS,
             "agg": ("any", "all", "last"),
             "on_unknown": (True, False, "unknown"),
             "modality": ("B", "G"),
@@ -78,6 +87,7 @@ PROPOSITIONS: Mapping[str, tuple[Mapping[str, Any], Fields]] = {
         {"on_unknown": (True, False), "agg": ("last", "any")},
     ),
     "tight": ({"expr": "outline < 0.5 m or mode = dock"}, {}),
+    "ahead": ({"expr": "pace > 1 m/s or speed > pace"}, {}),
     "rising": ({"expr": "speed > pre(0 m/s, speed)"}, {}),
 }
 VARIABLES: Mapping[str, tuple[Mapping[str, Any], Fields]] = {
@@ -122,6 +132,7 @@ SENTENCES = (
     "the agv shall always satisfy preBool(false, near) -> persisted(1, speed < 9)",
     "whenever rising the agv shall until near satisfy outline > 1 cm",
     "while tight the agv shall for 2 ticks satisfy !both",
+    "whenever near the agv shall within 2 ticks satisfy pace < 3 & ahead",
     '"Drive with care."',
     '"Fahre vorsichtig, immer."',
 )
@@ -177,15 +188,15 @@ PLAIN: Mapping[str, Any] = {
 @pytest.mark.parametrize(
     ("known", "drawn"),
     [
-        (clock._CLOCK, {"tick", *CLOCK}),
-        (signals._SIGNAL, {name for each in SIGNALS.values() for part in each for name in part}),
+        (clock.FIELDS, {"tick", *CLOCK}),
+        (signals.FIELDS, {name for each in SIGNALS.values() for part in each for name in part}),
         (
-            propositions._PROPOSITION,
+            propositions.FIELDS,
             {name for each in PROPOSITIONS.values() for part in each for name in part},
         ),
-        (variables._VARIABLE, {n for each in VARIABLES.values() for part in each for n in part}),
+        (variables.FIELDS, {n for each in VARIABLES.values() for part in each for n in part}),
         (labels._RUN, {*LABELS}),
-        (coordinates._MAP, {*MAP}),
+        (coordinates.FIELDS, {*MAP}),
         (documents.FIELDS, {"id", *HEADER}),
     ],
 )

@@ -3,6 +3,8 @@
 import hashlib
 from pathlib import Path
 
+import pyarrow
+import pyarrow.parquet
 import pytest
 
 from fretc.audit.evidence.schema import SCHEMA, BindingsRecord, EvidenceDocument
@@ -53,3 +55,22 @@ def test_a_file_of_a_folder_that_is_not_named_is_found(tmp_path: Path) -> None:
     assert wrong(folder, {**listed(folder), "logs/run/run_9.mcap": "0" * 64}) == [
         "the manifest names it, but the evidence has no result for it"
     ]
+
+
+def test_the_runs_of_a_table_are_those_of_its_one_file_and_none_is_left_out(tmp_path: Path) -> None:
+    file = tmp_path / "f.parquet"
+    pyarrow.parquet.write_table(pyarrow.table({"episode_index": [0, 1], "t": [0.0, 0.0]}), file)
+    sha = hashlib.sha256(file.read_bytes()).hexdigest()
+    manifest = Manifest(str(tmp_path / "manifest"), {"logs/f.parquet": sha})
+
+    def differences(*numbers: int, claim: str = sha) -> dict[str, int]:
+        runs = [f"logs/f.parquet#{number}" for number in numbers]
+        results = tuple(result(run=run, hashes={"log": claim}) for run in runs)
+        document = EvidenceDocument(SCHEMA, "", BindingsRecord("", ""), (), results)
+        places = {run: f"{file}#{number}" for run, number in zip(runs, numbers, strict=True)}
+        return {each.run: len(each.differences) for each in matches(document, manifest, places)}
+
+    assert differences(0, 1) == {"logs/f.parquet#0": 0, "logs/f.parquet#1": 0}
+    assert differences(1) == {"logs/f.parquet#1": 0, "logs/f.parquet#0": 1}
+    file.write_bytes(file.read_bytes() + b"x")
+    assert differences(1)["logs/f.parquet#1"] == 1

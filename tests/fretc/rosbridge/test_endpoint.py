@@ -38,6 +38,8 @@ stop.publish(roslibpy.Message({"data": False}))
 print("done" if done.wait(20) else "lost", heard)
 chat.unsubscribe()
 stop.unadvertise()
+service = roslibpy.Service(client, "/double", "a_srvs/Double")
+print("answer", service.call(roslibpy.ServiceRequest({"a": 21}), timeout=20)["a"])
 try:
     service = roslibpy.Service(client, "/none", "std_srvs/Empty")
     print("answer", service.call(roslibpy.ServiceRequest({}), timeout=20))
@@ -49,7 +51,8 @@ client.terminate()
 
 @contextmanager
 def running(received: "Queue[Any]") -> Iterator[Endpoint]:
-    with Endpoint(TYPES, lambda *message: received.put(message)) as endpoint:
+    services = {"/double": lambda request: {"a": 2 * request["a"]}}
+    with Endpoint(TYPES, lambda *message: received.put(message), services=services) as endpoint:
         yield endpoint
 
 
@@ -81,6 +84,7 @@ def test_roslibpy_publishes_subscribes_and_calls() -> None:
         out, _ = client.communicate(timeout=2 * WAIT)
     assert out.splitlines() == [
         f"done {texts}",
+        "answer 42",
         "no service: service '/none' does not exist",
     ]
     assert client.returncode == 0

@@ -1,11 +1,18 @@
 """The operations of one client: what the protocol's specification says, and its limits."""
 
 import json
+from collections.abc import Mapping
 from typing import Any
 
 import pytest
 
 from fretc.rosbridge.session import MOST_SUBSCRIPTIONS, MOST_TOPICS, Graph, Session
+
+
+def added(request: Mapping[str, Any]) -> Mapping[str, Any]:
+    if request.keys() != {"a", "b"}:
+        raise ValueError("two numbers are needed")
+    return {"sum": request["a"] + request["b"]}
 
 
 class Talk:
@@ -14,7 +21,8 @@ class Talk:
     def __init__(self) -> None:
         self.published: list[tuple[str, str, Any]] = []
         self.replies: list[dict[str, Any]] = []
-        self.graph = Graph({"/scan": "sensor_msgs/LaserScan"}, self.publish)
+        types = {"/scan": "sensor_msgs/LaserScan"}
+        self.graph = Graph(types, self.publish, {"/add": added, "/hang": lambda request: None})
         self.session = Session(self.graph, self.replies.append)
 
     def publish(self, topic: str, kind: str, message: Any) -> None:
@@ -96,7 +104,19 @@ def test_warnings_are_sent_to_who_asks_for_them() -> None:
     assert talk.says(op="nonsense") == []
 
 
-def test_a_call_fails() -> None:
+def test_a_service_answers_or_refuses_or_is_silent() -> None:
+    talk, call = Talk(), {"op": "call_service", "service": "add", "id": 7}
+    answer = {"op": "service_response", "service": "add", "id": 7}
+    good = talk.says(**call, args={"a": 2, "b": 3})
+    assert good == [{**answer, "values": {"sum": 5}, "result": True}]
+    for wrong, why in (({"a": 2}, "two numbers are needed"), ([2, 3], "the arguments of a call")):
+        (bad,) = talk.says(**call, args=wrong)
+        assert bad["result"] is False
+        assert bad["values"].startswith(why)
+    assert talk.says(**{**call, "service": "/hang"}) == []
+
+
+def test_a_call_of_no_service_fails() -> None:
     assert Talk().says(op="call_service", service="/rosapi/topics", id="call:1") == [
         {
             "op": "service_response",

@@ -32,6 +32,10 @@ path = "/x.data"
 path = "/y.data"
 [signal.z]
 path = "/x.other"
+[signal.v]
+value = "hypot(x, y)"
+[signal.w]
+value = "clamp(x + v, 0, 11) + 0 * sqrt(x - 5)"
 [proposition.near]
 expr = "x < 5"
 agg = "{aggregate}"
@@ -71,7 +75,12 @@ settings_ = st.builds(
     age=st.sampled_from(["", 'max_age = "17 ms"']),
     aggregate=st.sampled_from(["any", "all", "last"]),
     unknown=st.sampled_from(["", "on_unknown = true"]),
-    slow=st.sampled_from(["y - pre(9, y) < 5", "y < 5 and x < 9", "z < 5 for 25 ms"]),
+    slow=st.sampled_from(
+        [
+            *("y - pre(9, y) < 5", "y < 5 and x < 9", "z < 5 for 25 ms"),
+            *("v < 9.1 for 12 ms", "w < 11 or v > 10", "v - pre(9, v) < 2"),
+        ]
+    ),
     lateness=st.sampled_from([0, 5, 20]),
 )
 

@@ -92,6 +92,8 @@ LATE_FIRST = [
 
 @pytest.mark.slow
 @example(Setting(time="publish_time", slow="z < 5 for 25 ms", lateness=20), LATE_FIRST, 40)
+@example(Setting(slow="v < 9.1 for 12 ms"), [Sent("/x", 1.0, 0), Sent("/y", 9.0, 5)], 40)
+@example(Setting(slow="v - pre(9, v) < 2"), [Sent("/x", 1.0, 0), Sent("/y", 9.0, 5)], 40)
 @given(settings_, messages, st.sampled_from([0, 3, 40]))
 @examples(6)
 def test_rows_and_verdicts_are_those_of_the_audit(

@@ -19,7 +19,7 @@ from fretish.diagnostics.source import Source
 ROOT = Path(__file__).parents[3]
 ROOMS = ("fretish", "compiler", "fretc")
 IMPORT = "from fretish.diagnostics.messages import diagnostic"
-ARGUMENTS = {"help", "paste", "subject", "fix"}
+ARGUMENTS = {"help", "paste", "subject", "fix", "related"}
 
 
 @cache

@@ -181,3 +181,28 @@ def of_tree(tree: Tree[LarkToken]) -> tuple[object, ...]:
         for child in tree.children
     ]
     return (str(tree.data), children, tree.meta.start_pos, tree.meta.end_pos)
+
+
+def test_a_beginning_continues_as_lark_says() -> None:
+    """Every beginning of the sentences that ends between two words."""
+    lark, own = _lark(parser.GRAMMAR), _parser(parser.GRAMMAR)
+    for text in SENTENCES:
+        for end in [match.start() for match in re.finditer(r"(?<=\s)\S|\Z", text)]:
+            reading = lark.parse_interactive(text[:end], start="start")
+            try:
+                reading.exhaust_lexer()
+            except (UnexpectedToken, UnexpectedCharacters):
+                expected = frozenset[str]()
+            else:
+                expected = frozenset(reading.accepts())  # type: ignore[no-untyped-call]
+            assert own.continuations(text[:end]) == expected, text[:end]
+
+
+def test_the_words_of_a_wrong_text_are_those_around_what_is_no_word() -> None:
+    words = [*_parser(parser.GRAMMAR).known_tokens("the § r \U0001f600 shal 5")]
+    assert [(str(word), word.type, word.start_pos) for word in words] == [
+        ("the", "THE", 0),
+        ("r", "ID", 6),
+        ("shal", "ID", 10),
+        ("5", "NUMBER", 15),
+    ]

@@ -8,7 +8,7 @@ import pytest
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
 from fretish.reading import limits
-from fretish.reading.limits import ExceededError, budget, with_budget
+from fretish.reading.limits import ExceededError, StoppedError, budget, stoppable, with_budget
 
 PLACE = Source("r.fret", "the sw").span(0, 0)
 
@@ -108,3 +108,23 @@ def test_a_thread_reads_without_a_budget() -> None:
 
 def test_the_error_is_no_exception_that_a_reader_might_catch() -> None:
     assert not issubclass(ExceededError, Exception)
+
+
+@pytest.mark.slow
+def test_a_block_is_stopped_when_its_result_is_not_wanted() -> None:
+    asked: list[None] = []
+
+    def stop() -> bool:
+        asked.append(None)
+        return len(asked) > 2
+
+    with pytest.raises(StoppedError), stoppable(stop, 60):
+        endless()
+    assert len(asked) == 3
+    assert with_budget(10, PLACE, lambda: 7) == 7, "and what comes later has its own limits"
+
+
+@pytest.mark.slow
+def test_a_block_that_may_be_stopped_has_a_limit() -> None:
+    with pytest.raises(ExceededError), stoppable(lambda: False, 0.2):
+        endless()

@@ -3,7 +3,10 @@
 // The contract stands at each call: what rclcpp and rclcpp_lifecycle document of it (Humble to
 // Jazzy). What is published goes to standard output, a line each: topic, tab, what the message's
 // `tell` says. `spin_once` makes one step of the script on standard input: a transition; `now NS`,
-// the node's clock; `beat`, all wall timers; a topic and numbers, a message; `signal`; `end`, of the context; `fail`.
+// the node's clock; `beat`, all wall timers; a topic and numbers, a message; `offer TOPIC TYPE BYTE`,
+// a publisher of this type, the definition of which has a hash of such bytes, 0 for none; `withdraw
+// TOPIC`, its end; `signal`; `end`, of the context; `fail`.
+// With FAKE_HUMBLE, endpoints have no hash.
 #ifndef FAKE_RCLCPP_HPP
 #define FAKE_RCLCPP_HPP
 
@@ -24,8 +27,29 @@
 
 #include "messages.hpp"
 
+#if __has_include(<rosidl_runtime_c/type_hash.h>)
+#include <rosidl_runtime_c/type_hash.h>
+#else
+struct rosidl_type_hash_t
+{
+  std::uint8_t version;
+  std::uint8_t value[32];
+};
+#endif
+
 namespace fake
 {
+
+inline rosidl_type_hash_t hash(int byte)
+{
+  rosidl_type_hash_t found{};
+  found.version = byte == 0 ? 0 : 1;
+  for (std::uint8_t & each : found.value) {
+    each = static_cast<std::uint8_t>(byte);
+  }
+  return found;
+}
+constexpr int OWN = 17;  // The bytes of the hash of each type that the node knows.
 
 inline std::int64_t now = 0;
 inline bool is_running = false;
@@ -131,6 +155,8 @@ public:
   explicit SubscriptionBase(std::string topic)
   : topic_(std::move(topic)) {}
   ~SubscriptionBase() {fake::subscriptions.erase(topic_);}
+  // The full name, after remapping.
+  const char * get_topic_name() const {return topic_.c_str();}
 
 private:
   std::string topic_;
@@ -142,6 +168,35 @@ public:
   using SharedPtr = std::shared_ptr<TimerBase>;
   ~TimerBase() {fake::timers.clear();}
 };
+
+// A publisher or a subscription, as the graph has it.
+class TopicEndpointInfo
+{
+public:
+  TopicEndpointInfo(std::string node, std::string type, rosidl_type_hash_t hash)
+  : node_(std::move(node)), type_(std::move(type)), hash_(hash) {}
+  const std::string & node_name() const {return node_;}
+  const std::string & node_namespace() const {return space_;}
+  const std::string & topic_type() const {return type_;}
+#ifndef FAKE_HUMBLE
+  const rosidl_type_hash_t & topic_type_hash() const {return hash_;}  // Since Iron.
+#endif
+
+private:
+  std::string node_, space_ = "/", type_;
+  [[maybe_unused]] rosidl_type_hash_t hash_;
+};
+
+}  // namespace rclcpp
+
+namespace fake
+{
+inline std::map<std::string, rclcpp::TopicEndpointInfo> publishers;
+inline std::map<std::string, std::string> types;  // Of the topics that the node reads.
+}  // namespace fake
+
+namespace rclcpp
+{
 
 struct Logger {};
 using ParameterValue = std::variant<double, std::vector<std::string>>;
@@ -205,7 +260,7 @@ public:
   using CallbackReturn = node_interfaces::LifecycleNodeInterface::CallbackReturn;
 
   explicit LifecycleNode(std::string name)
-  : name_(std::move(name)) {}
+  : name_(std::move(name)), full_name_("/" + name_) {}
   virtual ~LifecycleNode() = default;
 
   // The callbacks of this class enable (activate) and disable (deactivate) the managed publishers.
@@ -244,6 +299,7 @@ public:
     const std::string & topic, const rclcpp::QoS & qos, Callback callback)
   {
     std::cout << "subscription\t" << topic << ": " << qos.text << std::endl;
+    fake::types[topic] = type_name(static_cast<const Message *>(nullptr));
     fake::subscriptions[topic] = [callback](std::istream & text) {
         callback(std::make_shared<const Message>(made<Message>(text)));
       };
@@ -258,8 +314,23 @@ public:
     return std::make_shared<rclcpp::TimerBase>();
   }
 
+  // The publishers and the subscriptions of a topic, by its full name.
+  std::vector<rclcpp::TopicEndpointInfo> get_publishers_info_by_topic(const std::string & topic) const
+  {
+    const auto found = fake::publishers.find(topic);
+    return found == fake::publishers.end() ? std::vector<rclcpp::TopicEndpointInfo>() :
+           std::vector<rclcpp::TopicEndpointInfo>{found->second};
+  }
+  std::vector<rclcpp::TopicEndpointInfo> get_subscriptions_info_by_topic(
+    const std::string & topic) const
+  {
+    const std::string type = fake::types.at(topic);
+    return {{"recorder", type, fake::hash(99)}, {name_, type, fake::hash(fake::OWN)}};
+  }
+
   rclcpp::Time now() const {return rclcpp::Time(fake::now);}
   const char * get_name() const {return name_.c_str();}
+  const char * get_fully_qualified_name() const {return full_name_.c_str();}
   rclcpp::Logger get_logger() const {return {};}
   rclcpp::NodeBase * get_node_base_interface()
   {
@@ -300,7 +371,7 @@ private:
     return false;
   }
 
-  std::string name_, state_ = "unconfigured";
+  std::string name_, full_name_, state_ = "unconfigured";
   std::map<std::string, rclcpp::ParameterValue> parameters_;
   std::vector<std::weak_ptr<Managed>> managed_;
 };
@@ -340,6 +411,16 @@ public:
       for (const auto & each : fake::timers) {
         each();
       }
+    } else if (word == "offer") {
+      std::string topic, type;
+      int byte = 0;
+      text >> topic >> type >> byte;
+      fake::publishers.insert_or_assign(
+        topic, rclcpp::TopicEndpointInfo("robot", type, fake::hash(byte)));
+    } else if (word == "withdraw") {
+      std::string topic;
+      text >> topic;
+      fake::publishers.erase(topic);
     } else if (word == "signal") {
       std::raise(SIGINT);
     } else if (word == "end") {

@@ -101,7 +101,7 @@ def test_what_is_no_scenario_is_refused_with_the_place(tmp_path: Path, text: str
 
 
 def test_a_name_that_is_none_tells_those_that_are() -> None:
-    with pytest.raises(ScenarioError, match="there is no scenario `nominul`; there are blind"):
+    with pytest.raises(ScenarioError, match="there is no scenario `nominul`; there are agent-"):
         load("nominul")
 
 

@@ -90,6 +90,7 @@ EXPRESSIONS = (
         '[signal.w]\npath = "/s.n"\ntype = "a_msgs/S"\nvalues = { go = 2, halt = 3 }\n',
         "w != halt",
     ),
+    ('[signal.v]\nvalue = "x + 2 * abs(y)"\nunit = "mm"\n', "v < 60 cm and v / 2 != y"),
     ('[signal.b]\npath = "/s.b"\ntype = "a_msgs/S"\nunit = "1"\n', "b"),
     ('[signal.b]\npath = "/s.b"\ntype = "a_msgs/S"\nunit = "1"\n', "not b or x < 3 cm"),
 )

@@ -66,11 +66,16 @@ def test_the_files_of_the_papers_requirement(golden: Callable[[str, str], None])
     ("old", "new", "message"),
     [
         ("[action.undo_stopped]", "[action.other]", "F619 the agent of R1 does `undo_stopped`"),
+        (
+            "[action.stop_moving]",
+            '[call.stop_moving]\nservice = "/stop"\ntype = "std_srvs/Trigger"\n[action.x]',
+            "no action of the agent of R1 publishes true on `/gwendolen_control`",
+        ),
         ("[interceptor]", "[xinterceptor]", ""),
         (
             'topic   = "/gwendolen_control"',
             'topic   = "/other"',
-            "no action of the agent of R1 publishes on `/gwendolen_control`",
+            "no action of the agent of R1 publishes true on `/gwendolen_control`",
         ),
         (
             "message = { data = true }",
@@ -232,3 +237,54 @@ def test_run_py_says_what_is_missing(tmp_path: Path) -> None:
     (folder / "View.java").write_text("class View {}")
     done = started(folder, AJPF_HOME=str(home))
     assert done.stderr == "error: View.java is not the file that manifest.json lists\n"
+
+
+OWN = """\
+GWENDOLEN
+:name: agilex_agent
+
+:Initial Beliefs:
+awake
+
+:Initial Goals:
+
+:Plans:
+// +far : {True} <- fly;
++too_close : {B awake, ~B halted} <- print("<- a, b; +x"), stop_moving, +halted;
++halted : {True} <- print(1, f(2, 3)), undo_stopped, -awake;
+-too_close : {True};
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("", "", "error: set AJPF_HOME to the folder of MCAPL\n"),
+        ("+too_close", "+too_near", "error: F919 no percept shows `too_near`, and the agent does"),
+        ("-too_close", "-too_near", "error: F919 no percept shows `too_near`"),
+        ("B awake", "B happy", "error: F919 no percept shows `happy`"),
+        ("stop_moving", "stop", "error: F919 nothing is bound to the action `stop`: add"),
+        ("undo_stopped", "move(2,3)", "error: F919 nothing is bound to the action `move(2,3)`"),
+        ("agilex_agent", "other", "has no agent `agilex_agent`"),
+        ("GWENDOLEN", "\udcff", "is no text"),
+    ],
+)
+def test_an_agent_of_your_own_is_compared_with_the_bindings_before_anything_starts(
+    tmp_path: Path, old: str, new: str, message: str
+) -> None:
+    folder = write(tmp_path / "r1_agent", texts(made()))
+    assert old in OWN
+    text = OWN.replace(old, new) if old else OWN
+    (tmp_path / "own.gwen").write_bytes(text.encode("utf-8", "surrogateescape"))
+    done = started(folder, "--agent", str(tmp_path / "own.gwen"))
+    assert (done.returncode, done.stdout) == (2, "")
+    assert message in done.stderr
+
+
+def test_the_events_of_an_agent_are_those_of_its_plans(tmp_path: Path) -> None:
+    (tmp_path / "own.gwen").write_text(OWN)
+    manifest = json.loads(texts(made())["manifest.json"])
+    assert runtime_runner.fitting(tmp_path / "own.gwen", manifest) == "halted too_close"
+    (tmp_path / "own.gwen").write_text(texts(made())["SIF.gwen"])
+    assert runtime_runner.fitting(tmp_path / "own.gwen", manifest) == "too_close"

@@ -8,7 +8,7 @@ import subprocess
 import sys
 import time
 from array import array
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from queue import Empty, Queue
@@ -19,6 +19,7 @@ import pytest
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.ajpf import runtime_runner
 from fretc.rosbridge.endpoint import Endpoint
+from fretc.rosbridge.session import NO_SERVICES, Service
 from tests.compiler.targets.ajpf.test_runtime import compiled, made, texts, write
 from tests.programs import installed, mcapl, needs
 
@@ -43,15 +44,23 @@ def scan(distance: float) -> dict[str, Any]:
 class Robot:
     """The endpoint and the agent; the robot sends scans."""
 
-    def __init__(self, folder: Path, subject: FormalizedRequirement) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        subject: FormalizedRequirement,
+        services: Mapping[str, Service] = NO_SERVICES,
+        arguments: Sequence[str] = (),
+    ) -> None:
         self.stops: list[bool] = []
         self.traces: Queue[dict[str, Any]] = Queue()
         self.errors = (folder / "errors.txt").open("w+")
-        self.endpoint = Endpoint({"/scan": "sensor_msgs/LaserScan"}, self._receive)
+        self.endpoint = Endpoint(
+            {"/scan": "sensor_msgs/LaserScan"}, self._receive, services=services
+        )
         bundle = write(folder / "r1_agent", texts(subject))
         self.process = subprocess.Popen(
             [sys.executable, str(bundle / "run.py"), "--url", self.endpoint.url]
-            + ["--trace", TRACE],
+            + ["--trace", TRACE, *arguments],
             env={**os.environ, "AJPF_HOME": mcapl()},
             stdout=subprocess.DEVNULL,
             stderr=self.errors,
@@ -109,8 +118,13 @@ def _stamp() -> dict[str, int]:
 
 
 @contextmanager
-def robot(folder: Path, subject: FormalizedRequirement | None = None) -> Iterator[Robot]:
-    running = Robot(folder, subject or made())
+def robot(
+    folder: Path,
+    subject: FormalizedRequirement | None = None,
+    services: Mapping[str, Service] = NO_SERVICES,
+    arguments: Sequence[str] = (),
+) -> Iterator[Robot]:
+    running = Robot(folder, subject or made(), services, arguments)
     try:
         yield running
     finally:
@@ -198,6 +212,71 @@ def test_an_unknown_percept_stops_the_robot_even_if_no_plan_does(tmp_path: Path)
         subject.wait(subject.last(False))
 
 
+GRIPPER = (
+    TWO.replace(
+        "[interceptor]",
+        """[proposition.closed]
+expr = "b > 5"
+[interceptor]""",
+    )
+    + """
+[call.do_closed]
+service = "/gripper/close"
+type = "std_srvs/srv/SetBool"
+request = { data = true }
+limit = "300 ms"
+"""
+)
+
+
+def refusing(request: Mapping[str, Any]) -> Mapping[str, Any]:
+    raise ValueError("the gripper is stuck")
+
+
+ANSWERS: dict[str, tuple[Service, str]] = {
+    "done": (lambda request: {"success": True}, ""),
+    "not done": (lambda request: {"success": False, "message": "stuck"}, "the service refuses"),
+    "refused": (refusing, "the service refuses: the gripper is stuck"),
+    "silent": (lambda request: None, "there is no answer"),
+}
+
+
+@needs("java", "javac")
+@pytest.mark.slow
+@pytest.mark.parametrize("answer", ANSWERS)
+def test_an_action_calls_a_service_and_a_failure_is_a_stop(tmp_path: Path, answer: str) -> None:
+    """The call comes first: without it, the agent neither believes `closed` nor does the rest."""
+    service, why = ANSWERS[answer]
+    requests: list[Any] = []
+
+    def perform(request: Mapping[str, Any]) -> Mapping[str, Any] | None:
+        requests.append(request)
+        return service(request)
+
+    sentence = "whenever near the sw shall eventually satisfy closed & stopped"
+    with robot(tmp_path, made(GRIPPER, sentence), {"/gripper/close": perform}) as subject:
+        subject.wait(lambda: subject.endpoint.subscribers("/a") == 1)
+        subject.endpoint.publish("/a", {"data": 0.5})
+        subject.wait(subject.last(False))
+        subject.endpoint.publish("/a", {"data": 2.0})
+        subject.wait(subject.last(True))
+        record = subject.record()
+        while record["action"] is None:
+            record = subject.record()
+        assert (record["action"], record.get("failed", False)) == ("do_closed", bool(why))
+        assert requests == [{"data": True}]
+        if why:
+            count = len(subject.stops)
+            subject.wait(lambda: len(subject.stops) > count + 5)
+            assert {*subject.stops[count:]} == {True}
+            assert subject.actions() == []
+        else:
+            while record["beliefs"] != ["closed", "near", "stopped"]:
+                record = subject.record()
+    said = (tmp_path / "errors.txt").read_text()
+    assert (f"do_closed has failed: {why}" in said) is bool(why)
+
+
 LATCH = """
 package r1_agent;
 import ail.util.AILConfig;
@@ -228,6 +307,37 @@ public final class Latch {
     private Latch() {}
 }
 """
+
+
+OWN = """\
+GWENDOLEN
+:name: agilex_agent
+
+:Initial Beliefs:
+
+:Initial Goals:
+
+:Plans:
++too_close : {True} <- print("too near; I stop"), stop_moving, +halted;
+"""
+
+
+@needs("java", "javac")
+@pytest.mark.slow
+def test_an_agent_that_was_written_by_hand_runs(tmp_path: Path) -> None:
+    """It never releases the robot, unlike the emitted one."""
+    (tmp_path / "own.gwen").write_text(OWN)
+    with robot(tmp_path, arguments=["--agent", str(tmp_path / "own.gwen")]) as subject:
+        subject.drive(5.0, subject.last(False))
+        subject.drive(0.31, subject.last(True))
+        record = subject.record()
+        while record["beliefs"] != ["halted", "too_close"]:
+            record = subject.record()
+        subject.stops.clear()
+        subject.drive(5.0, lambda: len(subject.stops) > 5)
+        assert {*subject.stops} == {True}
+        while record["beliefs"] != ["halted"]:
+            record = subject.record()
 
 
 @needs("java", "javac")
@@ -281,4 +391,4 @@ def test_a_topic_of_another_type_ends_it_before_it_begins(tmp_path: Path) -> Non
         )
     assert done.returncode == 2
     assert "/scan has the type std_msgs/String, not sensor_msgs/LaserScan" in done.stderr
-    assert "error: a topic is of another type, or cannot be used" in done.stderr
+    assert "error: F919 a topic is of another type, or cannot be used" in done.stderr

@@ -42,7 +42,10 @@ settings_ = st.builds(
     aggregate=st.sampled_from(["any", "all", "last"]),
     unknown=st.sampled_from(["", "on_unknown = true", "on_unknown = false"]),
     slow=st.sampled_from(
-        ["y < 5 and x < 9", "z < 5 for 25 ms", "((x < 5 for 12 ms) or y < 5) for 9 ms"]
+        [
+            *("y < 5 and x < 9", "z < 5 for 25 ms", "((x < 5 for 12 ms) or y < 5) for 9 ms"),
+            *("v < 9.1 for 12 ms", "w < 11 or v > 10"),
+        ]
     ),
     lateness=st.sampled_from([0, 5, 20]),
 )
@@ -97,6 +100,8 @@ def judging(setting: Setting, some: Sequence[Sent], idle: int) -> tuple[Any, lis
 @pytest.mark.slow
 @examples(12)
 @given(settings_, messages, st.sampled_from([0, 3, 40]))
+@example(Setting(slow="v < 9.1"), [Sent("/x", 1.0, 0), Sent("/y", 9.0, 5), Sent("/x", 9.0, 20)], 40)
+@example(Setting(slow="w < 11"), [Sent("/x", 1.0, 0), Sent("/y", 1.0, 5), Sent("/x", 9.0, 20)], 40)
 @example(
     Setting(slow="z < 5 for 25 ms", lateness=0), [Sent("/x", 1.0, 0, 60), Sent("/x", 1.0, 40)], 3
 )

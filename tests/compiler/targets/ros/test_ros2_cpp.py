@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import subprocess
+from itertools import groupby
 from pathlib import Path
 
 import pytest
 from catkin_pkg.package import parse_package
 
 from compiler.targets.ros.ros2cpp import snake
-from tests.effort import FULL
+from tests.effort import FULL, full_only
 from tests.programs import needs
 from tests.ros2.cpp import built, write_headers, write_real_headers
 from tests.ros2.emitted import write
@@ -158,6 +159,14 @@ def test_the_node_does_the_same_with_the_messages_of_ros_2(
     scripts = (
         [*BEGIN, *known(SECOND), "/scan 0.33", "signal", "beat"],
         [*BEGIN, *known(SECOND, 0.5), "/scan nan", "beat", *known(2 * SECOND), "deactivate"],
+        [
+            *BEGIN,
+            *known(SECOND),
+            f"offer /scan {SCAN} 255",
+            "/scan 3.0",
+            "beat",
+            *known(2 * SECOND),
+        ],
     )
     for script in scripts:
         assert played(real, *script) == played(node, *script)
@@ -175,6 +184,51 @@ def test_the_node_stops_the_robot_while_it_does_not_know(node: Path, missing: li
     ]
     _, lines, _ = played(node, *BEGIN, *script, "beat", "signal", "beat")
     assert set(stops(lines)) == {"true"}
+
+
+SCAN = "sensor_msgs/msg/LaserScan"
+MEANWHILE = "nothing is known of it meanwhile"
+
+
+@pytest.mark.slow
+def test_another_definition_of_a_type_stops_the_robot_and_is_told_once(node: Path) -> None:
+    script = [
+        *BEGIN,
+        f"offer /scan {SCAN} 17",  # the node's own
+        *known(SECOND),
+        f"offer /scan {SCAN} 255",
+        "/scan 3.0",
+        "beat",
+        *known(2 * SECOND),
+        "beat",
+        f"offer /scan {SCAN} 0",  # a publisher that does not state it
+        *known(3 * SECOND),
+        "offer /scan nav_msgs/msg/Odometry 17",
+        "/scan 3.0",
+        "withdraw /scan",
+        *known(4 * SECOND),
+        "signal",
+        "beat",
+    ]
+    _, lines, told = played(node, *script)
+    texts = stops(lines)
+    assert [text for text, _ in groupby(texts)] == [
+        "true", "false", "true", "false", "true", "false", "true",
+    ]  # fmt: skip
+    what = f"/scan: /robot publishes another definition of {SCAN}, RIHS01_{'ff' * 32}: "
+    other = "/scan: /robot publishes nav_msgs/msg/Odometry: "
+    assert told == f"{what}{MEANWHILE}{other}{MEANWHILE}"
+
+
+@full_only("compiled once more")
+def test_in_humble_the_node_compares_the_names_of_types(package: Path, tmp_path: Path) -> None:
+    write_headers(tmp_path, TYPES, FIELDS, snake)
+    source, strict = package / "src", [*STRICT, "-DFAKE_HUMBLE", f"-I{tmp_path}", f"-I{FAKE}"]
+    node = built(tmp_path, source, source / "node.cpp", (), strict)
+    for offer, expected in ((f"{SCAN} 255", "false"), ("nav_msgs/msg/Odometry 17", "true")):
+        script = [*BEGIN, *known(SECOND), f"offer /scan {offer}", "/scan 3.0", "beat", "signal"]
+        _, lines, _ = played(node, *script)
+        assert stops(lines)[2:-1] == [expected] * (2 if expected == "true" else 1)
 
 
 @pytest.mark.slow

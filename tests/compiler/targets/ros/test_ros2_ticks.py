@@ -153,6 +153,7 @@ def test_every_tick_is_that_of_the_audit(
 
 DRIVER = """
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 #include <string>
 #include "setting.hpp"
@@ -177,10 +178,12 @@ int main()
   fretc::StopSupervisor<fretc::Machine> supervisor(setting, {0, 1}, 0.02);
   std::string value;
   while (std::cin >> topic >> stamp >> arrival >> value) {
-    const Posed message{{std::stod(value), 0.0, 0.0}};
+    const Posed message{{std::strtod(value.c_str(), nullptr), 0.0, 0.0}};
     const double steady = static_cast<double>(arrival) / 1e9;
     if (topic < 0) {
       supervisor.pass_to(arrival);
+    } else if (value == "refused" || value == "also") {
+      supervisor.refuse(topic, value, arrival);
     } else {
       supervisor.arrive(topic, stamp, arrival, steady,
         topic == 0 ? fretc::read_0(message) : fretc::read_1(message));
@@ -212,14 +215,21 @@ def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.slow
 @examples(12)
-@given(st.sampled_from(SETTINGS), messages, st.sampled_from([0, 3, 40, 5000]))
+@given(
+    st.sampled_from(SETTINGS),
+    messages,
+    st.dictionaries(st.integers(0, 24), st.sampled_from(["refused", "also"]), max_size=4),
+    st.sampled_from([0, 3, 40, 5000]),
+)
 def test_the_package_in_cpp_says_the_same(
     program: Path,
     subjects: dict[tuple[str, int], Subject],
     setting: tuple[str, int],
     some: list[Sent],
+    refusals: dict[int, str],
     idle: int,
 ) -> None:
+    """A refusal comes with a message: who publishes there would be misread."""
     package = subjects[setting].package
     module = World().process().load(package, "perception")
     monitors = World().process().load(package, "monitor")
@@ -228,8 +238,14 @@ def test_the_package_in_cpp_says_the_same(
     posed = [Posed(**vars(each), rank=rank) for rank, each in enumerate(ordered)]
     lines = [f"{int(module.SETTING.stamped)} {module.SETTING.lateness}"]
     expected = []
-    for each in posed:
+    for place, each in enumerate(posed):
         arrival = each.arrival.log_time
+        if place in refusals:
+            supervisor.refuse(each.topic, refusals[place], arrival)
+            expected.append([supervisor.stop(arrival / 1e9), *_states(supervisor)])
+            topic = module.SETTING.topics.index(each.topic)
+            lines.append(f"{topic} 0 {arrival} {refusals[place]}")
+            continue
         supervisor.arrive(each.topic, each.message, arrival, arrival / 1e9)
         expected.append([supervisor.stop(arrival / 1e9), *_states(supervisor)])
         value = "nan" if each.value is None else each.value

@@ -36,6 +36,7 @@ READ_AGAIN = {
     "the clock",
     "a path",
     "a topic less",
+    "the trace of agents",
 }
 """Changes of what is read of a log; all others are of the requirements."""
 

@@ -1,5 +1,6 @@
 """Parquet and Arrow files as logs: the same samples as the same rows in CSV."""
 
+import hashlib
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
@@ -7,13 +8,16 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from pyarrow import feather, ipc, parquet
 
+from fretc.audit.log_paths import logs
 from fretc.logs.reader import Overview, look, read
 from fretc.logs.signals.samples import Recording
 from fretish.diagnostics.diagnostic import Code, Diagnostic
-from tests.effort import FULL
-from tests.fretc.logs.logs import S
+from tests.effort import FULL, examples
+from tests.fretc.logs.logs import S, declare
 from tests.fretc.logs.tables.test_tables import DECLARED, codes, overview, put, recorded
 
 ROWS = {
@@ -41,6 +45,7 @@ def saved(folder: Path, kind: str, columns: dict[str, Any]) -> str:
 
 
 KINDS = ["parquet", "feather", "arrow"]
+X = declare('[clock]\ntick = "100 ms"\n[signal.x]\npath = "/table.x"\n')
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -81,8 +86,59 @@ def test_several_runs_in_a_file_are_refused(tmp_path: Path) -> None:
     wrong = look(saved(tmp_path, "parquet", columns))
     assert isinstance(wrong, Diagnostic)
     assert "several runs" in wrong.message
+    assert "run.parquet#0`" in str(wrong.help)
     columns["episode_index"] = [4, 4, 4]
     assert isinstance(look(saved(tmp_path, "parquet", columns)), Overview)
+
+
+@pytest.mark.slow
+@given(st.lists(st.sampled_from([0, 1, 2, 7]), min_size=1, max_size=40), st.sampled_from(["", "g"]))
+@examples(20)
+def test_a_run_of_several_is_read_as_a_file_of_its_rows(
+    tmp_path_factory: pytest.TempPathFactory, numbers: list[int], groups: str
+) -> None:
+    folder = tmp_path_factory.mktemp("runs")
+    rows: dict[str, list[Any]] = {
+        "timestamp": [i * 0.1 for i in range(len(numbers))],
+        "episode_index": numbers,
+        "x": [float(i) for i in range(len(numbers))],
+    }
+    whole = folder / "file-000.parquet"
+    parquet.write_table(pa.table(rows), whole, row_group_size=3 if groups else None)
+    runs = logs([str(whole)])
+    assert runs == (
+        [f"{whole}#{number}" for number in sorted({*numbers})]
+        if len({*numbers}) > 1
+        else [str(whole)]
+    )
+    for number in {*numbers}:
+        of_run = [i for i, each in enumerate(numbers) if each == number]
+        alone = folder / "alone.parquet"
+        parquet.write_table(
+            pa.table({name: [column[i] for i in of_run] for name, column in rows.items()}), alone
+        )
+        got, wanted = (read(path, X, ["x"]) for path in (f"{whole}#{number}", str(alone)))
+        assert isinstance(got, Recording)
+        assert isinstance(wanted, Recording)
+        np.testing.assert_array_equal(got.samples["x"].values, wanted.samples["x"].values)
+        np.testing.assert_array_equal(got.samples["x"].times, wanted.samples["x"].times)
+        assert got.sha256 == hashlib.sha256(whole.read_bytes()).hexdigest()
+
+
+def test_a_run_that_a_file_does_not_hold_is_refused(tmp_path: Path) -> None:
+    columns = {"timestamp": [0.0, 0.1], "episode_index": [0, 1], "x": [1, 2]}
+    path = saved(tmp_path, "parquet", columns)
+    for name in (f"{path}#2", f"{saved(tmp_path, 'feather', {'timestamp': [0.0]})}#0"):
+        assert isinstance(look(name), Diagnostic)
+    absent = look(f"{tmp_path}/none.parquet#0")
+    assert isinstance(absent, Diagnostic)
+    assert absent.code is Code.NO_SUCH_FILE
+
+
+def test_a_file_whose_name_ends_like_that_of_a_run_is_a_file(tmp_path: Path) -> None:
+    columns = {"timestamp": [0.0, 0.1], "episode_index": [5, 5], "x": [1, 2]}
+    path = Path(saved(tmp_path, "parquet", columns)).rename(tmp_path / "a.parquet#3")
+    assert isinstance(look(str(path)), Overview)
 
 
 def test_an_empty_table_is_refused(tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ from fretc.logs.signals.measures import NameValues
 from fretc.logs.signals.propositions import outermost_persistences, truth
 from fretc.logs.windows.truth_functions import NoFunctionError, NumberType, truth_function
 from fretish import expressions as e
+from fretish.bindings.functions import ROUNDED
 from tests.effort import examples
 
 NAN, INF = float("nan"), float("inf")
@@ -37,6 +38,10 @@ terms = st.recursive(
             lambda f, x: e.Call(f, tuple(x)),
             st.sampled_from(["min", "max"]),
             st.lists(inner, min_size=1, max_size=3),
+        )
+        | st.builds(e.Calculation, st.just("v"), inner, st.booleans())
+        | st.sampled_from([*ROUNDED.items()]).flatmap(
+            lambda each: st.builds(e.Call, st.just(each[0]), st.tuples(*[inner] * each[1].least))
         )
     ),
     max_leaves=4,

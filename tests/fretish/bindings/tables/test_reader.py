@@ -291,9 +291,9 @@ def test_a_path_names_a_topic_and_a_field(text: str, expected: Path | None) -> N
         ('"min_range < 5 cm"', '"min_rnge < 5 cm"', "F309 {}:21:9", "`min_rnge` is not declared"),
         (
             '"min_range < 5 cm"',
-            '"sqrt(min_range) < 5 m"',
+            '"root(min_range) < 5 m"',
             "F309 {}:21:9",
-            "unknown function `sqrt`",
+            "unknown function `root`",
         ),
         ('"min_range < 5 cm"', '"min_range < 5 parsec"', "F306 {}:21:21", "unknown unit `parsec`"),
         ('"min_range < 5 cm"', '"min_range < "', "F308 {}:21:21", "the expression ends too early"),

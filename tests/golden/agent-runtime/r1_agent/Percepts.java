@@ -41,6 +41,25 @@ final class Percepts {
         }
     }
 
+    /** Which service an action calls. */
+    static final class Call {
+        final String action;
+        final String service;
+        final String type;
+        /** The request in JSON. */
+        final String request;
+        /** Nanoseconds for the answer. */
+        final long limit;
+
+        Call(String action, String service, String type, String request, long limit) {
+            this.action = action;
+            this.service = service;
+            this.type = type;
+            this.request = request;
+            this.limit = limit;
+        }
+    }
+
     static final String AGENT = "agilex_agent";
     /** The topic of stop requests, std_msgs/Bool. */
     static final String STOP = "/gwendolen_control";
@@ -71,6 +90,9 @@ final class Percepts {
     static final Binding[] ACTIONS = {
         new Binding("stop_moving", "/gwendolen_control", "std_msgs/Bool", "{\"data\":true}"),
         new Binding("undo_stopped", "/gwendolen_control", "std_msgs/Bool", "{\"data\":false}"),
+    };
+
+    static final Call[] CALLS = {
     };
 
     private Percepts() {}
