@@ -2,6 +2,7 @@
 
 Each line is printed with OxiDD and with BuDDy; `--one` measures the engine of `FRETC_DIAGRAMS`.
 `--exports FILE...` analyzes FRET's exports as their users do, without an edit.
+`--generated` answers sets that are generated as industry writes them.
 `--tlsf FILE...` compares specifications in TLSF with the status that they state.
 """
 
@@ -23,6 +24,7 @@ from pathlib import Path
 import spot
 
 from benchmarks.figures import RUNS, Figure
+from benchmarks.generated_sets import controllers, one_plant
 from compiler.logic import printing
 from compiler.project.folder import load_folder
 from compiler.project.project import Project
@@ -195,6 +197,27 @@ def exports(files: Sequence[str]) -> None:
         )
 
 
+def generated() -> None:
+    """Sets with numbers: CPU seconds and memory of all questions, or of the first ones."""
+    sets = {
+        "200 requirements in 20 components": (controllers(20), None),
+        "50 requirements in one component, verdict": (one_plant(), 1),
+        "50 requirements in one component, with all conflicts": (one_plant(), 2),
+    }
+    for what, ((sentences, named), questions) in sets.items():
+        made, asked = requirements(*sentences), AnalysisOptions(LIMIT)
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        answers, _ = finished(jobs(made, named, (), asked)[:questions], lambda title: None)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        found = assembled(made, named, (), asked, answers)
+        seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+        verdicts = Counter(str(each.verdict) for each in found.components)
+        shown = ", ".join(f"{number} {verdict}" for verdict, number in sorted(verdicts.items()))
+        conflicts = f"{len(found.conflicts)} conflicts, {len(found.open)} open questions"
+        memory = after.ru_maxrss // 1024
+        print(f"{what}: {shown}; {conflicts}, {seconds:.1f} s, {memory} MiB", flush=True)
+
+
 def specifications(files: Sequence[str]) -> None:
     """Each file of TLSF that is imported: the verdict, the stated status, CPU seconds."""
     counts: Counter[str] = Counter()
@@ -243,6 +266,8 @@ def beside() -> None:
 if __name__ == "__main__":
     if "--exports" in sys.argv:
         exports(sys.argv[sys.argv.index("--exports") + 1 :])
+    elif "--generated" in sys.argv:
+        generated()
     elif "--tlsf" in sys.argv:
         specifications(sys.argv[sys.argv.index("--tlsf") + 1 :])
     elif "--one" in sys.argv:
