@@ -223,7 +223,7 @@ def _for_each_role(
         ):
             continue
         chosen = {**setting.roles, **dict.fromkeys(names, role)}
-        limit = Budget(budget.left / 2)
+        limit = Budget(budget.left / 2) if role is Role.OUTPUT else budget
         try:
             there = stage(
                 setting.requirements,
