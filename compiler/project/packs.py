@@ -5,7 +5,7 @@ A pack is a folder of project files. Those that ship with fretc are in the templ
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from compiler.files.templating import template_root
@@ -37,16 +37,23 @@ def read_pack(name: str) -> Mapping[str, str] | list[Diagnostic]:
     if isinstance(listed, Diagnostic):
         return [listed]
     beside = {each: sibling_path(str(folder), each) for each in (BINDINGS, HAZARDS)}
+    paths = [*listed, *filter(None, beside.values())]
     project = load(listed, beside[BINDINGS], beside[HAZARDS])
-    if has_errors(project.diagnostics):
-        return [*project.diagnostics]
+    own = [each for each in project.diagnostics if _is_about(each, paths)]
+    if has_errors(own):
+        return own
     texts: dict[str, str] = {}
-    for path in [*listed, *filter(None, beside.values())]:
+    for path in paths:
         source = read(path)
         if isinstance(source, Diagnostic):
             return [source]
         texts[Path(path).name] = source.text
     return texts
+
+
+def _is_about(mistake: Diagnostic, paths: Sequence[str]) -> bool:
+    """Whether a diagnostic is about the files of a pack, not about settings above its folder."""
+    return mistake.span is None or mistake.span.source.name in paths
 
 
 def _root() -> Path:

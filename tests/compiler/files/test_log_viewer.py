@@ -1,6 +1,9 @@
 """The address at which another program shows a log at a time."""
 
+from pathlib import Path
 from urllib.parse import parse_qs, urlsplit
+
+import pytest
 
 from compiler.files.log_viewer import host, link, mistake
 from compiler.files.settings import Settings, settings
@@ -74,7 +77,10 @@ def test_only_https_addresses_with_known_placeholders_are_accepted(
     assert mistake(address) == message
 
 
-def test_the_settings_have_the_address_or_say_what_is_wrong_with_it() -> None:
+def test_the_settings_have_the_address_or_say_what_is_wrong_with_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
     write("fretc.toml", f'viewer = "{FOXGLOVE}"\n')
     found = settings(".")
     assert isinstance(found, Settings)

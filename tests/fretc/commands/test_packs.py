@@ -356,6 +356,12 @@ def test_a_pack_with_an_error_is_refused_whole(fretc: Fretc) -> None:
     assert not Path("new").exists()
 
 
+def test_settings_above_a_pack_are_not_part_of_it(fretc: Fretc) -> None:
+    put("packs/fretc.toml", "viewer = 1\n")
+    put("packs/mine/a.fret", '+++\nid = "A"\n+++\nthe robot shall always satisfy p\n')
+    assert fretc("init", "--pack", "packs/mine", "new").status == 0
+
+
 def test_a_pack_and_a_log_are_refused(fretc: Fretc) -> None:
     run = fretc("init", "--pack", "nav2", "--from", "run.mcap")
     assert (run.status, run.err.split(" ")[0]) == (2, "F907")
