@@ -2,12 +2,15 @@
 
 Each line is printed with OxiDD and with BuDDy; `--one` measures the engine of `FRETC_DIAGRAMS`.
 `--exports FILE...` analyzes FRET's exports as their users do, without an edit.
+`--generated` answers sets that are generated as industry writes them.
+`--tlsf FILE...` compares specifications in TLSF with the status that they state.
 """
 
 from __future__ import annotations
 
 import json
 import os
+import re
 import resource
 import statistics
 import subprocess
@@ -21,11 +24,19 @@ from pathlib import Path
 import spot
 
 from benchmarks.figures import RUNS, Figure
+from benchmarks.generated_sets import controllers, one_plant
 from compiler.logic import printing
-from fretc.analysis.analysis import analyze
+from compiler.project.folder import load_folder
+from compiler.project.project import Project
+from compiler.project.tlsf.importing import read_specification
+from fretc.analysis.analysis import AnalysisOptions, analyze, assembled, jobs
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.roles import Roles
+from fretc.analysis.arena.roles import roles as signal_roles
+from fretc.analysis.assumptions import assumptions, guarantees
 from fretc.analysis.findings import RealizabilityVerdict
+from fretc.analysis.worker import finished
+from fretish.diagnostics.source import Source
 from tests.requirement_sets import ROLES, drawn, requirements, roles, staged
 
 ENGINES = ("OxiDD", "BuDDy")
@@ -186,6 +197,55 @@ def exports(files: Sequence[str]) -> None:
         )
 
 
+def generated() -> None:
+    """Sets with numbers: CPU seconds and memory of all questions, or of the first ones."""
+    sets = {
+        "200 requirements in 20 components": (controllers(20), None),
+        "50 requirements in one component, verdict": (one_plant(), 1),
+        "50 requirements in one component, with all conflicts": (one_plant(), 2),
+    }
+    for what, ((sentences, named), questions) in sets.items():
+        made, asked = requirements(*sentences), AnalysisOptions(LIMIT)
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        answers, _ = finished(jobs(made, named, (), asked)[:questions], lambda title: None)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        found = assembled(made, named, (), asked, answers)
+        seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+        verdicts = Counter(str(each.verdict) for each in found.components)
+        shown = ", ".join(f"{number} {verdict}" for verdict, number in sorted(verdicts.items()))
+        conflicts = f"{len(found.conflicts)} conflicts, {len(found.open)} open questions"
+        memory = after.ru_maxrss // 1024
+        print(f"{what}: {shown}; {conflicts}, {seconds:.1f} s, {memory} MiB", flush=True)
+
+
+def specifications(files: Sequence[str]) -> None:
+    """Each file of TLSF that is imported: the verdict, the stated status, CPU seconds."""
+    counts: Counter[str] = Counter()
+    for file in files:
+        text = Path(file).read_text("utf-8", errors="replace")
+        result = read_specification(Source(file, text))
+        stated = re.search(r"STATUS *: *(\w+)", text)
+        if not result.artifacts or stated is None:
+            counts["refused"] += 1
+            continue
+        with tempfile.TemporaryDirectory() as folder:
+            for artifact in result.artifacts:
+                (Path(folder) / artifact.path).write_text(artifact.text)
+            project = load_folder(folder)
+        assert isinstance(project, Project)
+        named, _ = signal_roles(project.formalized)
+        given, _ = assumptions(project.formalized, None)
+        asked = AnalysisOptions(LIMIT, repairs=False)
+        work = jobs(guarantees(project.formalized), named, given, asked)
+        verdicts = [job for job in work if job.title.startswith("can ") and "together" in job.title]
+        answers, _ = finished(verdicts, lambda title: None)
+        found = assembled(guarantees(project.formalized), named, given, asked, answers)
+        seconds = sum(float(each.seconds or 0) for each in found.components)
+        counts[f"{stated[1]}, answered {found.verdict}"] += 1
+        print(f"{file}: {stated[1]}, {found.verdict}, {seconds:.2f} s", flush=True)
+    print("; ".join(f"{number} {what}" for what, number in sorted(counts.items())))
+
+
 def beside() -> None:
     """All of it with each engine of decision diagrams, line by line beside each other."""
     outputs = [
@@ -206,6 +266,10 @@ def beside() -> None:
 if __name__ == "__main__":
     if "--exports" in sys.argv:
         exports(sys.argv[sys.argv.index("--exports") + 1 :])
+    elif "--generated" in sys.argv:
+        generated()
+    elif "--tlsf" in sys.argv:
+        specifications(sys.argv[sys.argv.index("--tlsf") + 1 :])
     elif "--one" in sys.argv:
         against_spot()
         hard()

@@ -19,7 +19,8 @@ fretish.classes  fretish.system  fretish.diagnostics  fretish.reading  fretish.e
 fretish.bindings  fretish.bindings.tables  fretish.english
 compiler.files  compiler.logic.diagrams  compiler.logic.ordering  compiler.logic.spelling
 compiler.logic  compiler.formalization  compiler.formalization.numbers
-compiler.situations  compiler.project  compiler.agents  compiler.program  compiler.signals
+compiler.situations  compiler.project  compiler.project.tlsf  compiler.agents
+compiler.program  compiler.signals
 compiler.targets  compiler.targets.python  compiler.targets.c  compiler.targets.rust
 compiler.targets.java  compiler.targets.ros  compiler.targets.javascript
 compiler.targets.automata  compiler.targets.ajpf

@@ -75,7 +75,7 @@ def conflicts(
         for core in found.larger:
             yield _perhaps_larger(Conflict(core, (), "the environment wins"))
         if budget is not whole:
-            yield from _of_parts(setting, shown, whole)
+            yield from _of_parts(setting, shown, found.unrolled, whole)
         yield OpenQuestion(question, f"{whole.over}{_hint(setting, whole.again())}")
         return
     except UnsupportedError as error:
@@ -84,20 +84,24 @@ def conflicts(
     if (uncertainty := found.uncertainty) is None:
         yield Completeness(tuple(requirement.id for requirement in setting.requirements))
     else:
-        yield from _of_parts(setting, shown, whole)
+        yield from _of_parts(setting, shown, found.unrolled, whole)
         yield OpenQuestion(question, uncertainty)
 
 
 def _of_parts(
-    setting: RealizabilityProblem, shown: Collection[tuple[str, ...]], budget: Budget
+    setting: RealizabilityProblem,
+    shown: Collection[tuple[str, ...]],
+    unrolled: Collection[str],
+    budget: Budget,
 ) -> Iterator[Conflict]:
     """Minimal conflicts of some of the requirements, except those that are known.
 
     A minimal conflict of a part is one of the component, because all its subsets are in the part.
     """
     known = [frozenset(each) for each in shown]
+    parts = (part for part in setting.parts if not {each.id for each in part} <= {*unrolled})
     try:
-        for part in lost_parts(setting, setting.parts, budget):
+        for part in lost_parts(setting, parts, budget):
             fights = _Fights(part, cache(partial(part.generous, budget)))
             for core in fights.minimal(budget):
                 if not any(each <= frozenset(core) for each in known):
@@ -159,13 +163,14 @@ class _Fights:
     def _decidable(self, there: Callable[[], RealizabilityProblem], role: Role) -> list[str]:
         """Ids of requirements that a game decides, or that are unrolled."""
         counted = {each.id for each in self.strict.arena.counters}
-        known = set(self._unrolled)
+        known = set(self.unrolled)
         if not known.issuperset(counted):
             known |= {each.id for each in there().certain(role)}
         return [each.id for each in self.strict.requirements if each.id in known]
 
     @property
-    def _unrolled(self) -> frozenset[str]:
+    def unrolled(self) -> frozenset[str]:
+        """Ids of requirements with exact answers."""
         return frozenset() if self.exact is None else self.exact.unrolled.known
 
     def _is_conflict(self, ids: Sequence[str], budget: Budget) -> bool:
@@ -187,7 +192,7 @@ class _Fights:
 
     def _is_about(self, ids: Sequence[str]) -> bool:
         """Whether all of these requirements are unrolled."""
-        return self._unrolled.issuperset(ids)
+        return self.unrolled.issuperset(ids)
 
     def _at_once(self, ids: Sequence[str], budget: Budget) -> bool | None:
         """`_answer` by short runs if an obligation may stay open, so that no run shows it."""
@@ -249,9 +254,9 @@ class _Fights:
         if self.exact is not None and self._is_about(every):
             uncertainty = None
         else:
-            uncertainty = (
-                self.strict.left_out or self.generous().of_inputs or self.strict.of_outputs
-            )
+            strict, generous = self.strict, self.generous()
+            uncertainty = strict.left_out or generous.left_out
+            uncertainty = uncertainty or generous.of_inputs or strict.of_outputs
         if uncertainty is None and self.smaller:
             which = "; ".join(map(listed, self.smaller))
             why = self.strict.left_out or self.strict.of_inputs or self.strict.of_outputs

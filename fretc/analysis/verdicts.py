@@ -16,8 +16,9 @@ from fretc.analysis.controllers.machine import NoMachineError, machine
 from fretc.analysis.controllers.moves import Mealy, mealy
 from fretc.analysis.findings import Component, OpenQuestion, RealizabilityVerdict
 from fretc.analysis.games.unrolled_runs import NoShortRun
-from fretc.analysis.realizability_problem import RealizabilityProblem
+from fretc.analysis.realizability_problem import RealizabilityProblem, stage
 from fretc.analysis.reasons import listed
+from fretc.analysis.undeclared_roles import are_known_before_outputs, undeclared
 from fretish.bindings.declarations import Role
 
 if TYPE_CHECKING:
@@ -34,7 +35,9 @@ def verdict(
     answer, why = _answer(setting, budget)
     there = setting
     if answer is RealizabilityVerdict.NOT_CHECKED:
-        answer, why = _without_inputs(setting, budget) or (answer, why)
+        answer, why = (
+            _without_inputs(setting, budget) or _for_each_role(setting, budget) or (answer, why)
+        )
     while answer is RealizabilityVerdict.NOT_CHECKED and has_room(budget):
         try:
             finer = there.finer(budget)
@@ -194,6 +197,46 @@ def _without_inputs(
         return None
     run = f"no run of {found.ticks} ticks satisfies {_few(sorted(found.of))}"
     return RealizabilityVerdict.UNREALIZABLE, run
+
+
+def _for_each_role(
+    setting: RealizabilityProblem, budget: Budget
+) -> tuple[RealizabilityVerdict, str] | None:
+    """Verdict that holds for each role of the variables without one, and for each definition.
+
+    The system wins if it does while the environment chooses them, and loses if it does while it
+    chooses them itself.
+    """
+    names = undeclared(setting.requirements, setting.roles)
+    if not names:
+        return None
+    free = (
+        f"whatever {listed([f'`{name}`' for name in names])} {'is' if len(names) == 1 else 'are'}"
+    )
+    certain = {
+        Role.OUTPUT: (RealizabilityVerdict.UNREALIZABLE, f"the environment wins, {free}"),
+        Role.INPUT: (RealizabilityVerdict.REALIZABLE, f"the system has a strategy, {free}"),
+    }
+    for role, (wanted, why) in certain.items():
+        if role is Role.INPUT and not are_known_before_outputs(
+            names, setting.requirements, setting.roles
+        ):
+            continue
+        chosen = {**setting.roles, **dict.fromkeys(names, role)}
+        limit = Budget(budget.left / 2) if role is Role.OUTPUT else budget
+        try:
+            there = stage(
+                setting.requirements,
+                setting.assumptions,
+                chosen,
+                as_fret=setting.as_fret,
+                budget=limit,
+            )
+        except (UnsupportedError, OutOfTimeError):
+            continue
+        if _answer(there, limit)[0] is wanted:
+            return wanted, why
+    return None
 
 
 def is_lost(setting: RealizabilityProblem, ids: Sequence[str], budget: Budget) -> bool:

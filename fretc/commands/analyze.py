@@ -39,6 +39,7 @@ from fretish.diagnostics.messages import diagnostic
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from compiler.files.artifact import Artifact
     from compiler.formalization.formalized import FormalizedRequirement
     from fretc.analysis.analysis import AnalysisOptions
     from fretc.analysis.arena.systems import Systems
@@ -59,9 +60,9 @@ if TYPE_CHECKING:
 @click.option(
     "--emit",
     "emitted",
-    type=click.Choice(("python", "hoa", "dot")),
+    type=click.Choice(("python", "hoa", "dot", "tlsf")),
     help="Write a controller that satisfies all requirements, as a Python program or a Mealy "
-    "machine.",
+    "machine; or each component as a TLSF specification.",
 )
 @path_option(
     "--emit-to", default="build", show_default=True, help="Folder for `--emit`. `-` prints."
@@ -134,7 +135,9 @@ def analyze(
         click.echo(coloured([*lines(analysis, sentences, left_out)]), nl=False)
     if output != "-":
         write_outputs({Path(output): evidence}, input_files(project, bindings))
-    if emitted is not None and not stopped:
+    if emitted == "tlsf" and not stopped:
+        _emit_specifications(examined, options, emit_to)
+    elif emitted is not None and not stopped:
         _emit(analysis, examined, options, emitted, emit_to)
     raise SystemExit(EXIT_INTERRUPTED if stopped else _status(analysis))
 
@@ -157,6 +160,29 @@ def asked(
     ]
     answers, stopped = finished(work, print_activity)
     return assembled(requirements, examined.roles, assumed, options, answers), stopped
+
+
+def _emit_specifications(examined: Systems, options: AnalysisOptions, output: str) -> None:
+    """Write a TLSF file for each component, and report the components without one."""
+    from fretc.analysis.tlsf import specifications
+
+    if len(examined.every) > 1:
+        fail(diagnostic("no_controller", why="there are several systems", help=_ONE_SYSTEM))
+    (system,) = examined.every
+    artifacts, refused = specifications(
+        system.requirements, system.assumptions, system.roles, options.seconds
+    )
+    print_diagnostics(refused)
+    if refused:
+        fail_at_end()
+    _write(artifacts, output)
+
+
+def _write(artifacts: Sequence[Artifact], output: str) -> None:
+    if output == "-":
+        write_outputs({Path("-"): "".join(artifact.text for artifact in artifacts)})
+    else:
+        write_outputs({Path(output) / artifact.path: artifact.text for artifact in artifacts})
 
 
 def _emit(
@@ -198,10 +224,7 @@ def _emit(
         artifacts = [controller(circuits, sentences, promises)]
     else:
         artifacts = [*automata(machines, output_format)]
-    if output == "-":
-        write_outputs({Path("-"): "".join(artifact.text for artifact in artifacts)})
-    else:
-        write_outputs({Path(output) / artifact.path: artifact.text for artifact in artifacts})
+    _write(artifacts, output)
 
 
 _ONE_SYSTEM = "select one of them with `--component`"

@@ -314,12 +314,13 @@ def import_(
     project_column: str | None,
     force: bool,
 ) -> None:
-    """Import requirements that FRET has exported, as JSON or CSV, or agents and their properties.
+    """Import requirements that FRET has exported, as JSON or CSV; agents; or TLSF.
 
     The command writes a .fret file for each FRET project, and bindings.toml with FRET's
     variables. Formulas are made anew from the sentences. The columns of a CSV are separated by
     comma, semicolon or tab, whichever splits its header into the most columns. Of an agent (.gwen)
-    and its properties (.psl), the command writes a .fret file for each, and their actions.
+    and its properties (.psl), the command writes a .fret file for each, and their actions. Each
+    formula of a specification in TLSF (.tlsf) becomes sentences of the same meaning.
 
     Example: fretc import EXPORT.json -o requirements
     """
@@ -341,6 +342,7 @@ def import_(
 def _imported(files: Sequence[str], columns: Mapping[str, str]) -> ImportResult:
     from compiler.files.text_files import read
     from compiler.project.fret_import import read_export
+    from compiler.project.tlsf.importing import read_specification
     from compiler.targets.ajpf.agent_import import SUFFIXES, read_agents
 
     sources = [or_fail(read(file)) for file in files]
@@ -348,7 +350,10 @@ def _imported(files: Sequence[str], columns: Mapping[str, str]) -> ImportResult:
         return read_agents(sources)
     if len(sources) > 1:
         raise click.UsageError("only agents and properties (.gwen, .psl) are imported together")
-    return read_export(sources[0], columns)
+    (source,) = sources
+    if source.name.lower().endswith(".tlsf"):
+        return read_specification(source)
+    return read_export(source, columns)
 
 
 def _deliver_all(files: Mapping[str, str], output: str) -> None:

@@ -211,6 +211,12 @@ class Code(Enum):
     FOREIGN_AJPF_RESULT = ("F617", "a result of AJPF belongs to no current requirement")
     NOT_OF_ALL = ("F618", "an output for all requirements cannot include some of them")
     ACTION_NOT_BOUND = ("F619", "an action of the agent is not bound to a topic")
+    NOT_TLSF = ("F620", "the file is not a TLSF specification")
+    TLSF_OF_FULL_FORMAT = ("F621", "the TLSF specification uses more than the basic format")
+    NO_PATTERN = ("F622", "a formula of TLSF is no pattern of FRETish")
+    OTHER_SEMANTICS = ("F623", "a TLSF specification has another semantics")
+    ASSUMPTION_READS_OUTPUTS = ("F625", "an imported assumption reads outputs")
+    NOT_FOR_TLSF = ("F624", "TLSF cannot state a component")
     TOO_LARGE = ("F670", "the output would be too large")
 
     SHORT_HOLD = ("F630", "the interceptor holds zero no longer than messages may be lost")

@@ -8,11 +8,16 @@ import pytest
 import z3
 
 from fretc.analysis.arena.budget import Budget
+from fretc.analysis.arena.variables import Numbers, UnsupportedError
 from fretc.analysis.arithmetic import cells, groups
-from fretc.analysis.conflicts import conflicts
+from fretc.analysis.arithmetic.atoms import Atoms
+from fretc.analysis.arithmetic.group_content import GroupContent
+from fretc.analysis.arithmetic.projection import Limit
+from fretc.analysis.conflicts import Completeness, conflicts
 from fretc.analysis.findings import Conflict, RealizabilityVerdict
 from fretc.analysis.realizability_problem import stage
 from fretc.analysis.verdicts import verdict
+from fretish.bindings.declarations import Role
 from tests.effort import FULL
 from tests.requirement_sets import requirements, roles
 
@@ -77,3 +82,33 @@ def test_what_a_part_decides_is_so_and_its_conflicts_are_minimal() -> None:
     assert counts[RealizabilityVerdict.UNREALIZABLE], counts
     assert by_part, "some are decided by a part"
     assert shown, "some have a conflict"
+
+
+@pytest.mark.slow
+def test_a_comparison_that_one_of_the_two_games_lacks_leaves_conflicts_open(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The environment wins by a large `t` at both ticks; a game with the system favoured shows it
+    only if its comparisons are solved."""
+    build = groups.ComparisonGroup.__init__
+
+    def limited(
+        self: groups.ComparisonGroup,
+        choice: GroupContent,
+        atoms: Atoms,
+        fresh: Numbers,
+        favoured: Role,
+        limit: Limit,
+    ) -> None:
+        if choice.is_mixed and favoured is Role.OUTPUT:
+            raise UnsupportedError("have too many patterns")
+        build(self, choice, atoms, fresh, favoured, limit)
+
+    monkeypatch.setattr(groups.ComparisonGroup, "__init__", limited)
+    sentences = (
+        "the sw shall within 1 ticks satisfy absReal(v - preReal(0.0, v)) <= 1",
+        "the sw shall always satisfy v >= t",
+    )
+    found = [*conflicts(stage(requirements(*sentences), (), NAMED), Budget(2))]
+    assert found
+    assert not any(isinstance(each, Completeness) for each in found)
