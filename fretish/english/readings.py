@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import field, replace
 from itertools import islice, product
+from typing import assert_never
 
 from fretish import expressions as e
 from fretish import syntax as s
@@ -137,7 +138,16 @@ _NOWHERE: Places = frozenset()
 
 def _goes_with(adverb: Adverb | None, timing: s.Timing, *, negated: bool) -> bool:
     """Whether a timing says what the adverb says: "always until", "never within"."""
-    return adverb is Adverb.ALWAYS and (negated or isinstance(timing, s.Until | s.For))
+    match timing:
+        case s.Until() | s.For():
+            goes_on = True
+        case s.Always() | s.Never() | s.Immediately() | s.Next():
+            goes_on = False
+        case s.Finally() | s.Eventually() | s.Within() | s.After() | s.Before():
+            goes_on = False
+        case _:
+            assert_never(timing)
+    return adverb is Adverb.ALWAYS and (negated or goes_on)
 
 
 def _demands(response: Response, frame: Frame) -> Iterator[_Demand]:
@@ -145,8 +155,11 @@ def _demands(response: Response, frame: Frame) -> Iterator[_Demand]:
     part = response.part
     condition = frame.condition
     if frame.effect is Effect.LASTING:
-        assert isinstance(frame.timing, s.For)
-        yield from _lasting(response, frame, frame.timing.duration)
+        match frame.timing:
+            case s.For(duration):
+                yield from _lasting(response, frame, duration)
+            case _:
+                raise AssertionError("what lasts has a duration")
         return
     if frame.effect is Effect.IFF and condition is not None:
         said = part.negated().expression if response.negated else part.expression
