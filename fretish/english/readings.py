@@ -155,11 +155,9 @@ def _demands(response: Response, frame: Frame) -> Iterator[_Demand]:
     part = response.part
     condition = frame.condition
     if frame.effect is Effect.LASTING:
-        match frame.timing:
-            case s.For(duration):
-                yield from _lasting(response, frame, duration)
-            case _:
-                raise AssertionError("what lasts has a duration")
+        duration = s.duration(frame.timing) if frame.timing is not None else None
+        assert duration is not None, "what lasts has a duration"
+        yield from _lasting(response, frame, duration)
         return
     if frame.effect is Effect.IFF and condition is not None:
         said = part.negated().expression if response.negated else part.expression
