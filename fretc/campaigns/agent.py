@@ -25,11 +25,11 @@ import numpy as np
 
 from compiler.targets.ajpf import runtime
 from compiler.targets.target import TargetOptions
-from fretc.campaigns.agent_faults import HEAP, FaultyConnection, flood, freeze, kill, thaw
+from fretc.campaigns.agent_faults import HEAP, FaultyConnection, flood, kill
 from fretc.campaigns.experiment import SAFETY_REQUIREMENT, declarations, project
 from fretc.rosbridge.endpoint import Endpoint
 from fretish.bindings.declarations import short_type
-from fretish.system.processes import kill_all
+from fretish.system.processes import kill_all, pause_all, resume_all
 from simulation.mission import EPOCH
 from simulation.world.scenario import AgentFault, Scenario
 
@@ -157,7 +157,7 @@ class AgentLink:
                 if is_on:
                     kill(self.process)
             case "frozen":
-                (freeze if is_on else thaw)(self.process)
+                (pause_all if is_on else resume_all)(self.process)
                 self.speaks = True  # It is to be waited for, before it counts as silent.
             case "out of memory":
                 if is_on:
@@ -276,7 +276,7 @@ def _java_options(scenario: Scenario) -> str:
 def _end(process: subprocess.Popen[bytes]) -> None:
     """End the agent; its script passes the signal on to Java."""
     if process.poll() is None:
-        thaw(process)
+        resume_all(process)
     process.terminate()
     try:
         process.wait(PATIENCE)

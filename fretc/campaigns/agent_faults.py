@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import signal
 import subprocess
 import time
 from array import array
@@ -78,16 +76,6 @@ def kill(process: subprocess.Popen[bytes]) -> None:
     """Kill the agent."""
     kill_all(process)
     process.wait()
-
-
-def freeze(process: subprocess.Popen[bytes]) -> None:
-    """Stop the processes of the agent: they live and do nothing."""
-    os.killpg(process.pid, signal.SIGSTOP)
-
-
-def thaw(process: subprocess.Popen[bytes]) -> None:
-    """Let stopped processes go on."""
-    os.killpg(process.pid, signal.SIGCONT)
 
 
 def flood(send: Callable[[Mapping[str, Any]], None], process: subprocess.Popen[bytes]) -> None:

@@ -50,6 +50,24 @@ def kill_all(process: subprocess.Popen[bytes]) -> None:
     process.kill()
 
 
+def pause_all(process: subprocess.Popen[bytes]) -> None:
+    """Stop a process that has its own group or session, and those that it has started: they live
+    and do nothing.
+
+    Raises:
+        OSError: Windows cannot do this.
+    """
+    if sys.platform == "win32":
+        raise OSError(None, "Windows cannot pause a process")
+    os.killpg(process.pid, signal.SIGSTOP)
+
+
+def resume_all(process: subprocess.Popen[bytes]) -> None:
+    """Let such processes go on, if they are paused."""
+    if sys.platform != "win32":
+        os.killpg(process.pid, signal.SIGCONT)
+
+
 @contextmanager
 def stops_blocked() -> Iterator[None]:
     """Block stop signals for a child that starts in this context, until it ignores them.
