@@ -51,8 +51,7 @@ def kill_all(process: subprocess.Popen[bytes]) -> None:
 
 
 def pause_all(process: subprocess.Popen[bytes]) -> None:
-    """Stop a process that has its own group or session, and those that it has started: they live
-    and do nothing.
+    """Pause a process that has its own group or session, and those that it has started.
 
     Raises:
         OSError: Windows cannot do this.
@@ -63,7 +62,7 @@ def pause_all(process: subprocess.Popen[bytes]) -> None:
 
 
 def resume_all(process: subprocess.Popen[bytes]) -> None:
-    """Let such processes go on, if they are paused."""
+    """Let the processes go on that `pause_all` has paused."""
     if sys.platform != "win32":
         os.killpg(process.pid, signal.SIGCONT)
 
