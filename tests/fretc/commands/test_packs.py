@@ -10,6 +10,7 @@ import pytest
 from compiler.project.packs import pack_names
 from tests.command import Fretc
 from tests.command import write as put
+from tests.effort import FULL
 from tests.fretc.logs.logs import MS, S, Sent, write
 
 Value = float | bool
@@ -213,7 +214,7 @@ LEROBOT = Case(
         Topic(
             "/table",
             "lerobot",
-            33,
+            100,
             lambda at: {
                 "observation": {"state": [at[name] for name in JOINTS]},
                 "action": [at[f"{name}_goal"] for name in JOINTS],
@@ -321,7 +322,9 @@ def test_one_run_keeps_a_pack_and_each_requirement_can_be_broken(fretc: Fretc, n
     record(Path("keeps.mcap"), case, {}, 30)
     assert verdicts(fretc, "keeps.mcap") == dict.fromkeys(case.breaks, "satisfied")
     for id, changes in case.breaks.items():
-        is_late = {*changes} & {"power", "docked"}
+        is_late = id in ("NAV-6", "TB-5")  # It can be broken after ten minutes.
+        if is_late and not FULL:
+            continue
         record(Path(f"{id}.mcap"), case, changes, case.length if is_late else 30)
         broken = verdicts(fretc, f"{id}.mcap")
         assert {each for each, verdict in broken.items() if verdict == "violated"} == {id}

@@ -50,14 +50,9 @@ The clock of one log jumps ahead by 5 s.
 BEFORE = 30
 """Seconds from the first stamp to its message: the mission is over before all of it is judged."""
 SPANS = (
-    dict.fromkeys(scenarios.without_agent(), (8.0, 32.0))
-    if FULL
-    else dict.fromkeys(("obstacle-moved", "safety-off"), (11.5, 14.0))
+    dict.fromkeys(scenarios.without_agent(), (8.0, 32.0)) if FULL else {"safety-off": (11.5, 14.0)}
 )
-"""Scenario: the seconds of the mission that are played.
-
-Of the two, EDGE is answered in one, and violated in the other.
-"""
+"""Scenario: the seconds of the mission that are played; in this one EDGE is violated."""
 SECOND = 10**9
 TYPES = {
     "/scan": "sensor_msgs/msg/LaserScan",
