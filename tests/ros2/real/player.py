@@ -73,6 +73,8 @@ class Player:
         self.lines: list[Any] = []
         self.values: dict[str, str] = {}
         """Those of the last diagnostic status of the sources."""
+        self.reports = 0
+        """How many of these statuses have come."""
         self.wheels: list[float] = []
         self.stops: list[bool] = []
         node.create_subscription(
@@ -90,6 +92,7 @@ class Player:
         for status in array.status:
             if status.name == "r1_monitor: sources":
                 self.values = {each.key: each.value for each in status.values}
+                self.reports += 1
 
     def until(self, holds: Any, seconds: float = PATIENCE) -> bool:
         """Listen until that holds; whether it does."""
@@ -175,8 +178,8 @@ def main(path: str, readers: str, before: str, after: str) -> None:
     times = player.go_on(end, SHORT)
     print("played", flush=True)
     times += player.go_on(times[-1], float(after) - SHORT)
-    reported = dict(player.values)
-    assert player.until(lambda: player.values != reported)
+    reports = player.reports
+    assert player.until(lambda: player.reports > reports)
     found = {
         "sent": player.sent,
         "times": times,

