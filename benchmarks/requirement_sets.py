@@ -209,11 +209,11 @@ def generated() -> None:
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         answers, _ = finished(jobs(made, named, (), asked)[:questions], lambda title: None)
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        found = assembled(made, named, (), asked, answers)
+        analysis = assembled(made, named, (), asked, answers)
         seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-        verdicts = Counter(str(each.verdict) for each in found.components)
+        verdicts = Counter(str(each.verdict) for each in analysis.components)
         shown = ", ".join(f"{number} {verdict}" for verdict, number in sorted(verdicts.items()))
-        conflicts = f"{len(found.conflicts)} conflicts, {len(found.open)} open questions"
+        conflicts = f"{len(analysis.conflicts)} conflicts, {len(analysis.open)} open questions"
         memory = after.ru_maxrss // 1024
         print(f"{what}: {shown}; {conflicts}, {seconds:.1f} s, {memory} MiB", flush=True)
 
@@ -239,10 +239,10 @@ def specifications(files: Sequence[str]) -> None:
         work = jobs(guarantees(project.formalized), named, given, asked)
         verdicts = [job for job in work if job.title.startswith("can ") and "together" in job.title]
         answers, _ = finished(verdicts, lambda title: None)
-        found = assembled(guarantees(project.formalized), named, given, asked, answers)
-        seconds = sum(float(each.seconds or 0) for each in found.components)
-        counts[f"{stated[1]}, answered {found.verdict}"] += 1
-        print(f"{file}: {stated[1]}, {found.verdict}, {seconds:.2f} s", flush=True)
+        analysis = assembled(guarantees(project.formalized), named, given, asked, answers)
+        seconds = sum(float(each.seconds or 0) for each in analysis.components)
+        counts[f"{stated[1]}, answered {analysis.verdict}"] += 1
+        print(f"{file}: {stated[1]}, {analysis.verdict}, {seconds:.2f} s", flush=True)
     print("; ".join(f"{number} {what}" for what, number in sorted(counts.items())))
 
 

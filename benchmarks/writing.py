@@ -58,7 +58,7 @@ class Pair:
 
 def pairs(fret: Path) -> tuple[Pair, ...]:
     """All requirements with an English text, in a fixed order."""
-    found: list[Pair] = []
+    pairs: list[Pair] = []
     for study in FILES:
         data = json.loads((fret / f"caseStudies/{study}.json").read_text("utf-8"))
         for row in data["requirements"]:
@@ -66,8 +66,8 @@ def pairs(fret: Path) -> tuple[Pair, ...]:
             if english:
                 names = _names(data["variables"], row["project"])
                 study_name = study.rpartition("/")[2]
-                found.append(Pair(study_name, row["reqid"], english, row["fulltext"], names))
-    return tuple(sorted(found, key=lambda p: (p.study, p.id, p.english, p.fretish)))
+                pairs.append(Pair(study_name, row["reqid"], english, row["fulltext"], names))
+    return tuple(sorted(pairs, key=lambda p: (p.study, p.id, p.english, p.fretish)))
 
 
 def halves(every: Sequence[Pair]) -> tuple[tuple[Pair, ...], tuple[Pair, ...]]:
@@ -172,16 +172,16 @@ def _in_ticks(bound: e.Expression) -> e.Expression:
 
 def _atoms(tree: s.Sentence) -> dict[str, bool | None]:
     """Atom → None for a name; for a comparison, whether its first form is a negation."""
-    found: dict[str, bool | None] = {}
+    signs: dict[str, bool | None] = {}
 
     def collect(part: e.Expression) -> e.Expression:
         for atom in _parts(part):
             sign = atom.op in _NEGATED if isinstance(atom, e.Comparison) else None
-            found.setdefault(_key(atom), sign)
+            signs.setdefault(_key(atom), sign)
         return part
 
     s.with_expressions(tree, collect)
-    return found
+    return signs
 
 
 def _parts(part: e.Expression) -> Iterator[e.Expression]:

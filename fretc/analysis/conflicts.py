@@ -54,8 +54,8 @@ def conflicts(
         "which others of "
         f"{', '.join(requirement.id for requirement in setting.requirements)} conflict"
     )
-    shown: set[tuple[str, ...]] = set()
-    found, whole = _Fights(setting, lambda: setting), budget
+    earlier: set[tuple[str, ...]] = set()
+    fights, whole = _Fights(setting, lambda: setting), budget
     try:
         check_assumptions(setting, budget)
         exact = lassos(setting)
@@ -63,34 +63,34 @@ def conflicts(
             budget = Budget(budget.left / 2)  # The rest is for parts with those left out.
         there: RealizabilityProblem | None = setting
         while there is not None:
-            found = _Fights(there, cache(partial(there.generous, budget)), exact)
-            for core in found.minimal(budget):
-                if core not in shown:
-                    shown.add(core)
-                    yield found.conflict(core, budget)
-            there = there.finer(budget) if found.is_open and has_room(budget) else None
-        for core in found.larger:
-            yield _perhaps_larger(found.conflict(core, budget))
+            fights = _Fights(there, cache(partial(there.generous, budget)), exact)
+            for core in fights.minimal(budget):
+                if core not in earlier:
+                    earlier.add(core)
+                    yield fights.conflict(core, budget)
+            there = there.finer(budget) if fights.is_open and has_room(budget) else None
+        for core in fights.larger:
+            yield _perhaps_larger(fights.conflict(core, budget))
     except OutOfTimeError:
-        for core in found.larger:
+        for core in fights.larger:
             yield _perhaps_larger(Conflict(core, (), "the environment wins"))
         if budget is not whole:
-            yield from _of_parts(setting, shown, found.unrolled, whole)
+            yield from _of_parts(setting, earlier, fights.unrolled, whole)
         yield OpenQuestion(question, f"{whole.over}{_hint(setting, whole.again())}")
         return
     except UnsupportedError as error:
         yield OpenQuestion(question, str(error))
         return
-    if (uncertainty := found.uncertainty) is None:
+    if (uncertainty := fights.uncertainty) is None:
         yield Completeness(tuple(requirement.id for requirement in setting.requirements))
     else:
-        yield from _of_parts(setting, shown, found.unrolled, whole)
+        yield from _of_parts(setting, earlier, fights.unrolled, whole)
         yield OpenQuestion(question, uncertainty)
 
 
 def _of_parts(
     setting: RealizabilityProblem,
-    shown: Collection[tuple[str, ...]],
+    earlier: Collection[tuple[str, ...]],
     unrolled: Collection[str],
     budget: Budget,
 ) -> Iterator[Conflict]:
@@ -98,7 +98,7 @@ def _of_parts(
 
     A minimal conflict of a part is one of the component, because all its subsets are in the part.
     """
-    known = [frozenset(each) for each in shown]
+    known = [frozenset(each) for each in earlier]
     parts = (part for part in setting.parts if not {each.id for each in part} <= {*unrolled})
     try:
         for part in lost_parts(setting, parts, budget):
@@ -236,8 +236,8 @@ class _Fights:
             at_once = switched(there.game(there.counters(ids), budget), there.fresh)
             if at_once is not None:
                 return map(chosen, at_once.cores(budget))
-        found = cores(len(ids), lambda some: holds(chosen(some), budget), near, smaller)
-        return map(chosen, found)
+        sets = cores(len(ids), lambda some: holds(chosen(some), budget), near, smaller)
+        return map(chosen, sets)
 
     def conflict(self, ids: Sequence[str], budget: Budget) -> Conflict:
         """A conflict with its play."""
@@ -269,10 +269,10 @@ def _unrolled_conflict(
 ) -> Conflict:
     """A minimal conflict of requirements without inputs, with a run that satisfies them longest."""
     ids = sorted(members)
-    shown = exact.play(ids, budget)
-    if shown is None:
+    outcome = exact.play(ids, budget)
+    if outcome is None:
         return Conflict(tuple(ids), (), "no run satisfies all of them")
-    game, play, ticks = shown
+    game, play, ticks = outcome
     requirements = [each for each in setting.requirements if each.id in ids]
     lost = broken(requirements, game.alphabet, play, as_fret=setting.as_fret)
     assert lost, f"the play of {', '.join(ids)} breaks none of them"

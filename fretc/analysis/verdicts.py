@@ -46,9 +46,9 @@ def verdict(
         if finer is None:
             break
         there = finer
-        found, because_ = _answer(there, budget)
-        if found is not RealizabilityVerdict.NOT_CHECKED:
-            answer, why, setting = found, because_, there
+        verdict, because_ = _answer(there, budget)
+        if verdict is not RealizabilityVerdict.NOT_CHECKED:
+            answer, why, setting = verdict, because_, there
     if answer is RealizabilityVerdict.NOT_CHECKED:
         alone = without_inputs(setting.requirements, setting.roles)
         some = [*setting.parts, *([alone] if 0 < len(alone) < len(setting.requirements) else [])]
@@ -190,12 +190,12 @@ def _without_inputs(
     try:
         check_assumptions(setting, budget)
         exact = lassos(setting)
-        found = exact and exact.answer(sorted(exact.unrolled.known), Budget(budget.left / 4))
+        result = exact and exact.answer(sorted(exact.unrolled.known), Budget(budget.left / 4))
     except (UnsupportedError, OutOfTimeError):
         return None
-    if not isinstance(found, NoShortRun):
+    if not isinstance(result, NoShortRun):
         return None
-    run = f"no run of {found.ticks} ticks satisfies {_few(sorted(found.of))}"
+    run = f"no run of {result.ticks} ticks satisfies {_few(sorted(result.of))}"
     return RealizabilityVerdict.UNREALIZABLE, run
 
 

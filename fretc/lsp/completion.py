@@ -119,10 +119,10 @@ def _names(view: View, beginning: str, place: lsp.Range) -> Iterator[lsp.Complet
 
 
 def _of_kind(
-    view: View, kind: NameKind, shown: lsp.CompletionItemKind, place: lsp.Range
+    view: View, kind: NameKind, icon: lsp.CompletionItemKind, place: lsp.Range
 ) -> Iterator[lsp.CompletionItem]:
     for name in sorted({each.name for each in view.occurrences if each.kind is kind}):
-        yield _item(identifier(name), shown, place)
+        yield _item(identifier(name), icon, place)
 
 
 def _values_of_comparison(project: Project | None, beginning: str) -> Sequence[str]:
@@ -196,8 +196,8 @@ def _of_toml(
         word = match[match.lastindex or 0]
         place = view.positions.range(offset - len(word), offset)
         names = _candidates(view, fields, table, kind, match, is_header=is_header)
-        shown = lsp.CompletionItemKind.Value if kind == "value" else lsp.CompletionItemKind.Property
-        yield from (_item(name, shown, place) for name in names)
+        icon = lsp.CompletionItemKind.Value if kind == "value" else lsp.CompletionItemKind.Property
+        yield from (_item(name, icon, place) for name in names)
         return
 
 

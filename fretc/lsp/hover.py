@@ -95,9 +95,9 @@ def _of_name(view: View, occurrence: Occurrence) -> Iterator[str]:
     yield from _declared(project, occurrence)
     users = _users(view, occurrence)
     if users:
-        shown = ", ".join(_plain(id) for id in users[:_MOST_USERS])
+        names = ", ".join(_plain(id) for id in users[:_MOST_USERS])
         more = f" and {len(users) - _MOST_USERS} more" if len(users) > _MOST_USERS else ""
-        yield f"\nused by {shown}{more}"
+        yield f"\nused by {names}{more}"
 
 
 def _declared(project: Project, occurrence: Occurrence) -> Iterator[str]:

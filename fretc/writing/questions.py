@@ -60,13 +60,13 @@ def compare(readings: Sequence[FormalizedRequirement], seconds: float) -> Compar
     undecided = ""
     for index, reading in enumerate(readings):
         twin = None
-        found: list[RunColumns] = []
+        more: list[RunColumns] = []
         for earlier in kept:
-            if any(_tells(readings[earlier], reading, run) for run in (*runs, *found)):
+            if any(_tells(readings[earlier], reading, run) for run in (*runs, *more)):
                 continue
             apart = difference(readings[earlier], reading, budget.left, readings)
             if isinstance(apart, DistinguishingRun):
-                found.append(_decisive(readings[earlier], reading, apart.word))
+                more.append(_decisive(readings[earlier], reading, apart.word))
             elif apart.why:
                 late = f"it takes more than {seconds:g} CPU seconds"
                 undecided = apart.why if budget.left else late
@@ -77,7 +77,7 @@ def compare(readings: Sequence[FormalizedRequirement], seconds: float) -> Compar
             same.append((index, twin))
             continue
         kept.append(index)
-        runs += found
+        runs += more
     some = {index: readings[index] for index in kept}
     questions = tuple(_question(some, run) for run in _distinct([*runs, *_longer(some, runs)]))
     return Comparison(tuple(kept), tuple(same), questions, undecided)

@@ -233,8 +233,8 @@ class Proposition:
 
 @cache_by_identity
 def _calculations(expression: Expression) -> tuple[str, ...]:
-    found = (part.name for part in parts(expression) if isinstance(part, Calculation))
-    return tuple(dict.fromkeys(found))
+    names = (part.name for part in parts(expression) if isinstance(part, Calculation))
+    return tuple(dict.fromkeys(names))
 
 
 @cache_by_identity

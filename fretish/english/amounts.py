@@ -93,8 +93,8 @@ def amount_in(phrase: Phrase) -> tuple[e.Expression, Places, int] | None:
     None: there is none, or there are several. A number in parentheses after words counts, so that
     "the capability (50 deg/s2)" is 50 deg/s2.
     """
-    found = [i for i in range(len(phrase)) if digits_of(phrase, i) is not None]
-    spans = [(i, *_quantity(phrase, i)) for i in found]
+    starts = [i for i in range(len(phrase)) if digits_of(phrase, i) is not None]
+    spans = [(i, *_quantity(phrase, i)) for i in starts]
     if len(spans) != 1:
         return None
     start, expression, end = spans[0]

@@ -78,13 +78,13 @@ def outline(words: Phrase) -> Outline:
 def _modal(words: Phrase) -> tuple[int, int]:
     """Index and length of the modal; without one, where the main clause begins."""
     said = lower(words)
-    found = [*_modals(said)]
-    if found and _opens(words):  # "if it must stop, the lamp shall be on"
+    modals = [*_modals(said)]
+    if modals and _opens(words):  # "if it must stop, the lamp shall be on"
         commas = [i for i, word in enumerate(said) if word in (",", "then")]
-        later = [each for each in found if commas and each[0] > commas[0]]
-        return later[0] if later else found[-1]
-    if found:
-        return found[0]
+        later = [each for each in modals if commas and each[0] > commas[0]]
+        return later[0] if later else modals[-1]
+    if modals:
+        return modals[0]
     for index, word in enumerate(said):
         if word in ("always", "never"):
             return index, 0
@@ -164,8 +164,8 @@ def _without_comma(words: Phrase) -> tuple[Phrase, Phrase]:
     timed = time_clause(words, 0)
     if timed is not None and not timed[0].is_since:
         return words[: timed[1]], words[timed[1] :]
-    found = marker(words, 0)
-    first = len(found[0]) if found else 1
+    mark = marker(words, 0)
+    first = len(mark[0]) if mark else 1
     cuts = [i for i in range(first + 1, len(said)) if said[i] in _DETERMINERS]
     cut = cuts[-1] if cuts else len(words) - 1
     return words[:cut], words[cut:]
@@ -179,11 +179,11 @@ def _inner(words: Phrase) -> list[Clause]:
     index = len(first[0]) if first else 1
     cuts = []
     while index < len(words):
-        found = marker(words, index)
+        mark = marker(words, index)
         joined = said[index - 1] in ("and", "or")
-        if found and (joined or found[1] is Role.WHILE or found[0] in _MOMENTS):
+        if mark and (joined or mark[1] is Role.WHILE or mark[0] in _MOMENTS):
             cuts.append((index - joined, index, _or_before(words, index)))
-            index += len(found[0])
+            index += len(mark[0])
         index += 1
     for end, following, joins in [*cuts, (len(words), len(words), words[:0])]:
         clauses.append(_clause(words[start:end], either))
@@ -203,12 +203,12 @@ def _clause(words: Phrase, either: Phrase) -> Clause:
         clause, end = time
         rest = words[end:]
         return replace(clause, words=rest, either=either)
-    found = marker(words, 0)
-    if found is None:
+    mark = marker(words, 0)
+    if mark is None:
         return Clause(Role.WHEN, (), words, None, either)
-    length = len(found[0])
-    keep = 0 if found[0] != ("in",) else 1
-    return Clause(found[1], words[:length], words[max(length, keep) :], None, either)
+    length = len(mark[0])
+    keep = 0 if mark[0] != ("in",) else 1
+    return Clause(mark[1], words[:length], words[max(length, keep) :], None, either)
 
 
 # After the component ---------------------------------------------------------------------------
@@ -269,13 +269,13 @@ def _starts(words: Phrase) -> Iterator[tuple[int, Clause]]:
         step = 1
         if depth == 0:
             timed = time_clause(words, index)
-            found = marker(words, index)
+            mark = marker(words, index)
             if timed is not None:
                 clause, step = timed
                 yield index, clause
-            elif found is not None and _begins(said, index, found[0]):
-                step = len(found[0])
-                yield index, Clause(found[1], words[index : index + step])
+            elif mark is not None and _begins(said, index, mark[0]):
+                step = len(mark[0])
+                yield index, Clause(mark[1], words[index : index + step])
         index += step
 
 
@@ -315,18 +315,18 @@ def _head(text: str, parts: Outline) -> str:
 
 def _with_otherwise(text: str, parts: Outline) -> tuple[str, ...]:
     """The demands of "if a then b, otherwise c": the second is "unless a, c"."""
-    found = _OTHERWISE.search(text)
+    match = _OTHERWISE.search(text)
     conditions = [clause for clause in parts.before if clause.role is Role.WHEN and clause.words]
-    if found is None or len(conditions) != 1 or len(parts.before) > 1:
+    if match is None or len(conditions) != 1 or len(parts.before) > 1:
         return (text,)
     first, last = conditions[0].words[0], conditions[0].words[-1]
     condition = text[first.start : last.start + len(last.text)]
     subject = text[: parts.subject[-1].start + len(parts.subject[-1].text)] if parts.subject else ""
     subject = subject[parts.subject[0].start :] if subject else "it"
-    other = re.sub(r"^it\b", subject, text[found.end() :].strip())
+    other = re.sub(r"^it\b", subject, text[match.end() :].strip())
     has_modal = bool(outline(words(other)).modal)
     demand = other if has_modal else f"{_head(text, parts)} {other}"
-    return text[: found.start()], f"unless {condition}, {demand}"
+    return text[: match.start()], f"unless {condition}, {demand}"
 
 
 _OTHERWISE = re.compile(r"\s*,?\s+(?:otherwise|else)\b,?", re.IGNORECASE)

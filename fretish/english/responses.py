@@ -189,7 +189,7 @@ def _without_not(predicate: Phrase) -> tuple[Phrase, bool, Places]:
 
 def _without_adverbs(phrase: Phrase) -> tuple[Phrase, tuple[tuple[Adverb, Places], ...]]:
     """The words without adverbs of time, and these."""
-    rest, found, index = list[Word](), list[tuple[Adverb, Places]](), 0
+    rest, adverbs, index = list[Word](), list[tuple[Adverb, Places]](), 0
     said = lower(phrase)
     while index < len(phrase):
         wording, adverb = next(
@@ -200,9 +200,9 @@ def _without_adverbs(phrase: Phrase) -> tuple[Phrase, tuple[tuple[Adverb, Places
             rest.append(phrase[index])
             index += 1
         else:
-            found.append((adverb, places(phrase[index : index + len(wording)])))
+            adverbs.append((adverb, places(phrase[index : index + len(wording)])))
             index += len(wording)
-    return tuple(rest), tuple(found)
+    return tuple(rest), tuple(adverbs)
 
 
 def _change(

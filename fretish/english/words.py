@@ -71,10 +71,10 @@ def sentences(text: str) -> tuple[str, ...]:
 def words(sentence: str) -> Phrase:
     """The words of a sentence; `mis-compare` is one, `60-second` are two."""
     plain = _DIGIT_HYPHEN.sub(" ", _HYPHEN.sub("_", sentence))
-    found = []
+    parts = []
     for match in _WORD.finditer(plain):
-        found += _apart(match[0], match.start())
-    return tuple(found)
+        parts += _apart(match[0], match.start())
+    return tuple(parts)
 
 
 def _apart(text: str, start: int) -> list[Word]:

@@ -54,13 +54,13 @@ def read_specification(source: Source) -> ImportResult:
     entries: list[tuple[dict[str, Any], str]] = []
     mistakes: list[Diagnostic] = []
     for number, part in enumerate(specification.formulas, 1):
-        found = sentences(
+        texts = sentences(
             f.globally(part.formula) if part.section in ALWAYS else part.formula, names
         )
-        if found is None:
+        if texts is None:
             mistakes.append(diagnostic("no_pattern", part.span, formula=_short(part)))
         else:
-            entries.extend(_entries(number, part, found))
+            entries.extend(_entries(number, part, texts))
     if mistakes:
         return ImportResult((), tuple(mistakes))
     outputs = set(specification.outputs)
@@ -92,13 +92,13 @@ def _written(name: str) -> str:
 
 
 def _entries(
-    number: int, part: SectionFormula, found: tuple[str, ...]
+    number: int, part: SectionFormula, texts: tuple[str, ...]
 ) -> Iterator[tuple[dict[str, Any], str]]:
     """Header and sentence of each requirement of a formula."""
     is_assumption = part.section in OF_ENVIRONMENT
     letter = "A" if is_assumption else "G"
-    for place, sentence in enumerate(found, 1):
-        more = f".{place}" if len(found) > 1 else ""
+    for place, sentence in enumerate(texts, 1):
+        more = f".{place}" if len(texts) > 1 else ""
         header = {"id": f"{letter}{number}{more}", "text": f"{part.section}: {_short(part)}"}
         if is_assumption:
             header["kind"] = ASSUMPTION

@@ -141,8 +141,8 @@ class _Reader:
     def _unexpected(self, token: _Token, wanted: str) -> _RefusedError:
         if token.text == "[" or token.kind == "number":
             return self._not_basic("a bus or an index", token)
-        shown = f"`{token.text}` stands" if token.text else "the file ends"
-        return self._wrong(f"{shown} where {wanted} is expected", token.start, token.end)
+        place = f"`{token.text}` stands" if token.text else "the file ends"
+        return self._wrong(f"{place} where {wanted} is expected", token.start, token.end)
 
     def _wrong(self, why: str, start: int, end: int) -> _RefusedError:
         end = min(max(end, start + 1), len(self._source.text))
@@ -190,7 +190,7 @@ class _Reader:
     def _info(self) -> dict[str, str]:
         self._take("INFO")
         self._take("{")
-        found: dict[str, str] = {}
+        entries: dict[str, str] = {}
         while self._next.text != "}":
             key = self._take().text
             self._take(":")
@@ -199,9 +199,9 @@ class _Reader:
                 if self._tokens[self._at + 1].text == ":":
                     break
                 words.append(self._take().text)
-            found[key] = " ".join("".join(words).strip('"').split())
+            entries[key] = " ".join("".join(words).strip('"').split())
         self._take("}")
-        return found
+        return entries
 
     def _signals(self) -> tuple[str, ...]:
         names = []
@@ -215,15 +215,15 @@ class _Reader:
         return tuple(names)
 
     def _section(self, name: str, known: set[str]) -> list[SectionFormula]:
-        found = []
+        formulas = []
         while self._next.text != "}":
             first = self._next
             formula = self._formula(0, known)
             last = self._tokens[self._at - 1]
-            found.append(SectionFormula(name, formula, self._source.span(first.start, last.end)))
+            formulas.append(SectionFormula(name, formula, self._source.span(first.start, last.end)))
             if self._next.text != "}":
                 self._take(";")
-        return found
+        return formulas
 
     def _formula(self, level: int, known: set[str]) -> f.Formula:
         if level == len(_LEVELS):

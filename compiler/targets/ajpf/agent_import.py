@@ -90,12 +90,12 @@ def _take_properties(source: Source, taken: _Import) -> None:
         taken.diagnostics.append(read)
         return
     for each in read:
-        found = _sentence(each)
-        if isinstance(found, str):
+        reading = _sentence(each)
+        if isinstance(reading, str):
             what = f"the property `{each.key}`"
-            taken.diagnostics.append(diagnostic("not_imported", each.span, what=what, why=found))
+            taken.diagnostics.append(diagnostic("not_imported", each.span, what=what, why=reading))
             continue
-        text, variables = found
+        text, variables = reading
         taken.diagnostics += each.remarks
         origin = f"the property on line {each.span.line} of {_base(source)}"
         taken.add(_Sentence(each.key.strip("_.-") or "P", text, origin, _base(source)))
@@ -211,8 +211,8 @@ def _take_agent(source: Source, taken: _Import) -> None:
 def _place(plan: Span, what: str) -> Span:
     """The place of a deed in its plan, by its first word; else the whole plan."""
     word = re.match(r"`([+-]?\w+)", what)
-    found = re.search(rf"{re.escape(word[1])}\b", plan.text) if word else None
-    return plan.part(*found.span()) if found else plan
+    match = re.search(rf"{re.escape(word[1])}\b", plan.text) if word else None
+    return plan.part(*match.span()) if match else plan
 
 
 def _take_plan(

@@ -75,14 +75,14 @@ class Lassos:
         for satisfied, run in self._runs.items():
             if wanted <= satisfied:
                 return run
-        found = self._searched(wanted, budget, longest)
-        if isinstance(found, NoShortRun):
-            self._conflicts.append(found)
-        elif found is not None:
-            self._runs[wanted] = found
+        result = self._searched(wanted, budget, longest)
+        if isinstance(result, NoShortRun):
+            self._conflicts.append(result)
+        elif result is not None:
+            self._runs[wanted] = result
         elif longest == LONGEST:
             self._open.add(wanted)
-        return found
+        return result
 
     def _searched(
         self, ids: frozenset[str], budget: Budget, longest: int
@@ -92,9 +92,9 @@ class Lassos:
             self.unrolled.grow()
         while True:
             budget.check()
-            found = self.unrolled.shortest(wanted, budget)
-            if found is not None:
-                return found
+            result = self.unrolled.shortest(wanted, budget)
+            if result is not None:
+                return result
             run = self.unrolled.lasso(wanted, budget)
             if run is not None:
                 return run if self._is_kept(run, ids) else None

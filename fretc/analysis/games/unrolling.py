@@ -106,9 +106,9 @@ class UnrolledRequirements:
         low, high = 1, self._length
         while low < high:
             middle = (low + high) // 2
-            found = self._core(ids, middle, budget)
+            smaller = self._core(ids, middle, budget)
             low, high, core = (
-                (low, middle, found) if found is not None else (middle + 1, high, core)
+                (low, middle, smaller) if smaller is not None else (middle + 1, high, core)
             )
         return NoShortRun(high, core)
 
@@ -297,9 +297,9 @@ def _first(atoms: Atoms, name: str, now: Mapping[str, Term]) -> Term:
 
 
 def _holds(atoms: Atoms, formula: Term, values: Mapping[str, Term]) -> bool:
-    found = _put_in(atoms, formula, values)
-    assert z3.is_true(found) or z3.is_false(found), "every number is known"
-    return bool(z3.is_true(found))
+    value = _put_in(atoms, formula, values)
+    assert z3.is_true(value) or z3.is_false(value), "every number is known"
+    return bool(z3.is_true(value))
 
 
 def _put_in(atoms: Atoms, term: Term, values: Mapping[str, Term]) -> Term:

@@ -109,7 +109,7 @@ def agent_beliefs(
         trigger: the trigger whose demand was broken; None: there is none.
         broken: the first violated tick.
     """
-    found = []
+    results = []
     for agent, trace in recording.agents.items():
         for proposition, column in columns.items():
             belief = beliefs.get(proposition, proposition)
@@ -120,8 +120,8 @@ def agent_beliefs(
                 if state is not None:
                     true = at(episode.since) if episode.value else None
                     names = (agent, belief, proposition)
-                    found.append(_belief(names, trace, state, true, since, at(0), broken))
-    return tuple(found)
+                    results.append(_belief(names, trace, state, true, since, at(0), broken))
+    return tuple(results)
 
 
 @dataclass(frozen=True, slots=True)
