@@ -52,6 +52,7 @@ def draft(
     durations: Sequence[int] = (),
     unread: Sequence[MissingSignal] = (),
     clocked_by: str = "",
+    topics: Sequence[TopicDraft] | None = None,
 ) -> str:
     """The text of a `bindings.toml`.
 
@@ -65,8 +66,9 @@ def draft(
         unread: signals that sentences compare and no bindings declare.
         clocked_by: the topic that sets the tick; empty: those of the names that sentences use, or
             else those of all signals.
+        topics: what `draft_of_topics` gives, if a caller drafts twice; None: it is called here.
     """
-    topics = _with_percentages(overview, topic_drafts(overview))
+    topics = draft_of_topics(overview) if topics is None else topics
     signals = [signal for topic in topics for signal in topic.signals]
     known = {signal.name for signal in signals}
     needs: list[Need] = [*unread, *missing]
@@ -148,12 +150,13 @@ def _example(overview: Overview, signals: Sequence[DraftedSignal]) -> str:
 # Percentages
 
 
-def _with_percentages(overview: Overview, topics: Sequence[TopicDraft]) -> list[TopicDraft]:
+def draft_of_topics(overview: Overview) -> list[TopicDraft]:
     """The topics, with the unit `%` for each fraction that exceeds 1 in the log.
 
     sensor_msgs/BatteryState defines the percentage as a number from 0 to 1, and many robots send
-    0 to 100.
+    0 to 100. A log with such a message is read once more.
     """
+    topics = topic_drafts(overview)
     fractions = [each for topic in topics for each in topic.signals if _is_fraction(each)]
     exceeding = {path for path, (_, most) in ranges(overview, fractions).items() if most > _ONE}
     note = "from 0 to 100 in this log, although its type defines it as 0 to 1; NaN: unmeasured"

@@ -7,15 +7,15 @@ its first audit shows something, and a person puts the true limit in its place.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from decimal import ROUND_CEILING, Decimal
 from pathlib import Path
 
 import numpy as np
 
 from compiler.files.templating import render
-from fretc.audit.bindings.draft import draft
-from fretc.audit.bindings.draft_signals import drafted_signals, plain_signals
+from fretc.audit.bindings.draft import draft, draft_of_topics
+from fretc.audit.bindings.draft_signals import TopicDraft, plain_signals
 from fretc.logs.reader import Overview, look, read
 from fretc.logs.signals.samples import Recording
 from fretc.logs.storage.log_names import is_url, name_of
@@ -104,7 +104,8 @@ def from_log(log: str) -> StarterFiles | Diagnostic:
     overview = look(run, words=True)
     if isinstance(overview, Diagnostic):
         return overview
-    signals = _signals(overview)
+    topics = draft_of_topics(overview)
+    signals = _signals(overview, topics)
     declarations, _ = read_bindings(Source("bindings.toml", signals))
     if declarations is None or not declarations.signals:
         return _no_signal(log)
@@ -115,7 +116,7 @@ def from_log(log: str) -> StarterFiles | Diagnostic:
     if bound is None:
         return _no_signal(log)
     origin = f"is the largest value in {Path(overview.recording.name).name}, rounded up."
-    signals = _signals(overview, declarations.signals[bound.signal].path.topic)
+    signals = _signals(overview, topics, declarations.signals[bound.signal].path.topic)
     files = _files(first_requirement(bound, origin), signals)
     return StarterFiles(files, overview.recording.findings)
 
@@ -129,10 +130,10 @@ def _files(requirement: FirstRequirement, signals: str) -> dict[str, str]:
     return dict(zip(_NAMES, texts, strict=True))
 
 
-def _signals(overview: Overview, clocked_by: str = "") -> str:
+def _signals(overview: Overview, topics: Sequence[TopicDraft], clocked_by: str = "") -> str:
     """The clock and signals; if no message type is well known, a signal for every field."""
-    text = draft(overview, (), clocked_by=clocked_by)
-    plain = () if drafted_signals(overview) else plain_signals(overview)
+    text = draft(overview, (), clocked_by=clocked_by, topics=topics)
+    plain = () if any(topic.signals for topic in topics) else plain_signals(overview)
     return text + render("project/signals.toml.j2", signals=plain)
 
 
