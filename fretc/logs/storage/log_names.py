@@ -15,7 +15,9 @@ from urllib.parse import parse_qsl, urlencode, urlsplit, urlunsplit
 LOGS = (".mcap", ".bag", ".db3", ".ulg", ".BIN")
 """Suffixes of files that are nothing but logs."""
 TEXT_TABLES = (".csv", ".tsv", ".jsonl", ".ndjson")
-TABLES = (*TEXT_TABLES, ".parquet", ".feather", ".arrow")
+ARROW_TABLES = (".parquet", ".feather", ".arrow")
+"""Suffixes of tables in Parquet and Arrow, which may hold several runs."""
+TABLES = (*TEXT_TABLES, *ARROW_TABLES)
 """Suffixes of tables, which may be logs."""
 STDIN = "-"
 _STDIN_NAME = "<stdin>"

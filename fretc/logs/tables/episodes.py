@@ -10,10 +10,11 @@ from __future__ import annotations
 import os
 import re
 
+from fretc.logs.storage.log_names import ARROW_TABLES
 from fretc.logs.tables.arrow_rows import episode_numbers
 from fretish.classes.frozen import dataclass
 
-_NAME = re.compile(r"(.+\.(?:parquet|feather|arrow))#([0-9]{1,9})", re.DOTALL)
+_NAME = re.compile(r"(.+)#([0-9]{1,9})", re.DOTALL)
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +29,7 @@ class Episode:
 def episode_of(path: str) -> Episode | None:
     """The run that a path names; None: the path is that of a file."""
     match = _NAME.fullmatch(path)
-    if match is None or os.path.lexists(path):
+    if match is None or not match[1].endswith(ARROW_TABLES) or os.path.lexists(path):
         return None
     return Episode(match[1], int(match[2]))
 
@@ -38,7 +39,7 @@ def runs_of(file: str) -> list[str]:
 
     A file that cannot be read is one run, and its reader says why.
     """
-    if not file.endswith((".parquet", ".feather", ".arrow")) or not os.path.isfile(file):
+    if not file.endswith(ARROW_TABLES) or not os.path.isfile(file):
         return [file]
     with open(file, "rb") as stream:
         try:

@@ -302,8 +302,10 @@ def verdicts(fretc: Fretc, log: str) -> dict[str, str]:
     return {each["requirement"]: each["verdict"] for each in results}
 
 
-def test_all_packs_have_a_case() -> None:
+def test_all_packs_have_a_case_and_are_in_the_help(fretc: Fretc) -> None:
     assert [*CASES] == pack_names()
+    text = fretc("init", "--help").out
+    assert all(f"`{name}`" in text for name in CASES)
 
 
 @pytest.mark.parametrize("name", CASES)
