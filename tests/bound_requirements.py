@@ -11,6 +11,23 @@ from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
 from fretish.documents import RequirementEntry
 
+TABLES_OF_AGENT = """
+[interceptor]
+stop = "/stop"
+command = "/c"
+output = "/o"
+period = "50 ms"
+[action.do_stopped]
+topic = "/stop"
+type = "std_msgs/Bool"
+message = { data = true }
+[action.undo_stopped]
+topic = "/stop"
+type = "std_msgs/Bool"
+message = { data = false }
+"""
+"""The tables of bindings that an agent needs which stops the robot if `stopped` is to hold."""
+
 
 @lru_cache(maxsize=256)
 def declared(text: str) -> Declarations:

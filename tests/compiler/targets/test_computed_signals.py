@@ -14,7 +14,7 @@ from compiler.targets.python import perception
 from compiler.targets.ros import ros2cpp
 from fretish.diagnostics.rendering import render
 from monitors.loading import executed
-from tests.bound_requirements import bound_requirement
+from tests.bound_requirements import TABLES_OF_AGENT, bound_requirement
 from tests.c_monitors import STRICT
 from tests.programs import installed
 from tests.test_layers import ROOT
@@ -142,27 +142,17 @@ def test_a_node_in_python_has_the_functions_that_an_audit_calls() -> None:
     assert told == [False, True, None]
 
 
-AGENT = """
+AGENT = (
+    TABLES_OF_AGENT
+    + """
 [proposition.stopped]
 expr = "x > 1 m"
 [proposition.near]
 expr = "distance < 5 m"
 [proposition.high]
 expr = "height > 5 m"
-[interceptor]
-stop = "/stop"
-command = "/c"
-output = "/o"
-period = "50 ms"
-[action.do_stopped]
-topic = "/stop"
-type = "std_msgs/Bool"
-message = { data = true }
-[action.undo_stopped]
-topic = "/stop"
-type = "std_msgs/Bool"
-message = { data = false }
 """
+)
 
 
 def test_an_agent_refuses_a_function_whose_last_digits_differ() -> None:

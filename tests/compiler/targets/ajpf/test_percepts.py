@@ -21,14 +21,13 @@ from compiler.targets.ajpf.safety_function import Sif, sif
 from compiler.targets.python import perception
 from fretc.rosbridge.encoding import as_cbor, as_json
 from monitors.kernel.verdicts import Truth
-from tests.bound_requirements import bound_requirement
+from tests.bound_requirements import TABLES_OF_AGENT, bound_requirement
 from tests.effort import FULL
 from tests.programs import installed, needs
 
 PLAIN = ("Cbor", "Json", "Percepts", "Reading", "Signal", "View")
 FOOTPRINT = "[[0.3, 0.2], [-0.3, 0.2], [-0.3, -0.2], [0.3, -0.2]]"
-SHARED = """
-[clock]
+SHARED = f"""{TABLES_OF_AGENT}[clock]
 tick = "100 ms"
 [signal.q]
 path = "/q.data"
@@ -36,19 +35,6 @@ type = "std_msgs/Float64"
 unit = "1"
 [proposition.stopped]
 expr = "q > 1"
-[interceptor]
-stop = "/stop"
-command = "/c"
-output = "/o"
-period = "50 ms"
-[action.do_stopped]
-topic = "/stop"
-type = "std_msgs/Bool"
-message = { data = true }
-[action.undo_stopped]
-topic = "/stop"
-type = "std_msgs/Bool"
-message = { data = false }
 [signal.x]
 path = "/s.x"
 type = "a_msgs/S"
