@@ -246,7 +246,7 @@ def _summary_of_evidence(audited: EvidenceSource) -> Iterator[str]:
     from monitors import kernel
 
     audits = [
-        SingleAudit(summary, (), is_assumption=summary.verdict == ASSUMPTION_BROKEN)
+        SingleAudit.of(summary, (), is_assumption=summary.verdict == ASSUMPTION_BROKEN)
         for _, summary in audited.summaries()
     ]
     counts = Counter(audit.verdict for audit in audits)

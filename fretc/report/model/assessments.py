@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from types import MappingProxyType
 
@@ -97,27 +98,43 @@ class SingleAudit:
 
     result: ResultSummary
     suspicions: tuple[str, ...]
-    place: int = 0
+    mark: Mark
+    """Verdict and currency."""
+    place: int
     """Index of the result in the evidence."""
-    is_assumption: bool = False
-    """Whether the requirement is an assumption now, whatever it was at the audit."""
+
+    @classmethod
+    def of(
+        cls,
+        result: ResultSummary,
+        suspicions: tuple[str, ...],
+        place: int = 0,
+        *,
+        is_assumption: bool = False,
+    ) -> SingleAudit:
+        """The audit with its verdict; `violated` if the result lists a violation.
+
+        Args:
+            result: the result.
+            suspicions: the reasons why it is suspect.
+            place: its index in the evidence.
+            is_assumption: whether the requirement is an assumption now, whatever it was at the
+                audit.
+        """
+        violations = result.violations and result.trials is None
+        word = kernel.VIOLATED if violations else result.verdict
+        verdict = of_kind(word, is_assumption=is_assumption)
+        return cls(result, suspicions, verdict_mark(verdict, suspect=bool(suspicions)), place)
 
     @property
     def verdict(self) -> str:
-        """The verdict of the result; `violated` if the result lists a violation."""
-        violations = self.result.violations and self.result.trials is None
-        word = kernel.VIOLATED if violations else self.result.verdict
-        return of_kind(word, is_assumption=self.is_assumption)
+        """The word of the verdict."""
+        return self.mark.word
 
     @property
     def is_stale(self) -> bool:
         """Whether the result is about another version."""
-        return bool(self.suspicions)
-
-    @property
-    def mark(self) -> Mark:
-        """Verdict and currency."""
-        return verdict_mark(self.verdict, suspect=bool(self.suspicions))
+        return self.mark.suspect
 
     def since(self, review: tuple[str, ...]) -> SingleAudit:
         """The audit, with the reasons why it is suspect since a review.
@@ -127,7 +144,7 @@ class SingleAudit:
         """
         if not review or not self.mark.shows:
             return self
-        return SingleAudit(self.result, review, self.place, self.is_assumption)
+        return replace(self, suspicions=review, mark=verdict_mark(self.verdict, suspect=True))
 
 
 @dataclass(frozen=True, slots=True)
@@ -296,7 +313,7 @@ def assessments(
         verdict_inputs = inputs_of[entry]
         suspicions = AboutResults(verdict_inputs, audited_by, formalized=requirement is not None)
         audits = tuple(
-            SingleAudit(result, suspicions.of(result), place, entry.is_assumption)
+            SingleAudit.of(result, suspicions.of(result), place, is_assumption=entry.is_assumption)
             for place, result in results.get(entry.id, ())
         )
         assessed.append(

@@ -27,7 +27,7 @@ from fretish.classes.frozen import dataclass
 Latencies = Mapping[int, Sequence[float]]
 Thresholds = Mapping[int, Sequence[ThresholdRecord]]
 """Index of a result → its thresholds."""
-_AT_ONCE = 10_000
+_AT_ONCE = 16_000
 """Maximum number of results that are read at once, unless one requirement has more."""
 
 
