@@ -1,8 +1,9 @@
-"""Entry point of the `fretc` command: Ctrl-C during imports, and how often garbage is collected."""
+"""Entry point of the `fretc` command: Ctrl-C during imports, and what is set before them."""
 
 from __future__ import annotations
 
 import gc
+import os
 import sys
 
 _GARBAGE = 200_000
@@ -23,6 +24,9 @@ def main() -> None:
     without that search.
     """
     collect_rarely()
+    # NumPy's linear algebra starts a thread for each core when it is imported: a third of the CPU
+    # time of that import. Only estimates of probabilities use it, with small arrays.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     try:
         from fretc.cli import main as run
 

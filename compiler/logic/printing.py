@@ -25,7 +25,7 @@ _COMPOUND = re.compile(r"(?:[A-Za-z][A-Za-z0-9_.%]*)?\(.*\)", re.DOTALL)
 
 def identifier(name: str) -> str:
     """A variable's name as FRET writes it in formulas: `a.b` becomes `a_DOT_b`."""
-    return "".join(map(_mangled, name))
+    return name if name.isascii() and name.isidentifier() else "".join(map(_mangled, name))
 
 
 def _mangled(c: str) -> str:
