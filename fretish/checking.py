@@ -44,8 +44,20 @@ def too_deep(sentence: Sentence) -> Diagnostic:
 
 
 def calls(expression: e.Expression) -> Iterator[str]:
-    """The name of each function and predicate that the expression calls."""
-    return (part.name for part in e.parts(expression) if isinstance(part, e.Call))
+    """The name of each function and predicate that the expression calls.
+
+    An operator of a formula is called `G (formula)`, which is the name of no function.
+    """
+    for part in e.parts(expression):
+        if isinstance(part, e.Call):
+            yield part.name
+        elif isinstance(part, e.Temporal):
+            yield f"{part.operator} (formula)"
+
+
+def is_formula(sentence: Sentence) -> bool:
+    """Whether it is a formula with temporal operators, which no sentence of FRETish has."""
+    return any(isinstance(part, e.Temporal) for part in e.parts(sentence.response))
 
 
 def has_units(sentence: Sentence) -> bool:
@@ -120,6 +132,7 @@ def _is_boolean(part: e.Expression, expected: bool) -> bool:
             | e.Xor()
             | e.Implies()
             | e.Iff()
+            | e.Temporal()
             | e.Persistence()
         ):
             return True
@@ -177,7 +190,8 @@ def _at_least(number: Span) -> Fix | None:
 
 
 LOOK_BACK = frozenset("preBool persisted occurred prevOcc FTP".split())
-LOOK_AHEAD = frozenset("persists occurs nextOcc".split())
+FORMULA_OPERATORS = frozenset(f"{operator} (formula)" for operator in "XFGURW")
+LOOK_AHEAD = frozenset("persists occurs nextOcc".split()) | FORMULA_OPERATORS
 NUMBERS_BACK = frozenset({"preInt", "preReal"})
 
 

@@ -158,6 +158,20 @@ class Call:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
+TemporalOperator = Literal["X", "F", "G", "U", "R", "W"]
+
+
+@dataclass(frozen=True, slots=True)
+class Temporal:
+    """`G arg`, `F[2,5] arg`, `left U right`: a truth value of later ticks, in a formula only."""
+
+    operator: TemporalOperator
+    args: tuple[Expression, ...]
+    bounds: tuple[int, int] | None = None
+    """The ticks ahead of `F` and `G`, both ends included; None: for ever."""
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
 @dataclass(frozen=True, slots=True)
 class Calculation:
     """A computed signal in an expression of bindings: its value stands for its name."""
@@ -195,6 +209,7 @@ Expression = (
     | Implies
     | Iff
     | Call
+    | Temporal
     | Calculation
     | Persistence
 )
@@ -223,7 +238,7 @@ def children(expression: Expression) -> tuple[Expression, ...]:
             return (arg,)
         case And(args) | Or(args):
             return args
-        case Call(_, args):
+        case Call(_, args) | Temporal(_, args):
             return args
         case Calculation(_, value):
             return (value,)
@@ -248,7 +263,7 @@ def with_children(expression: Expression, parts: Sequence[Expression]) -> Expres
             return And(tuple(arg for part in parts for arg in _flat(And, part)))
         case Or():
             return Or(tuple(arg for part in parts for arg in _flat(Or, part)))
-        case Call():
+        case Call() | Temporal():
             return replace(expression, args=tuple(parts))
         case Calculation():
             return replace(expression, value=parts[0])
@@ -267,7 +282,7 @@ def with_comparisons(
             return rewrite(expression)
         case Not(arg) | Persistence(arg):
             return replace(expression, arg=with_comparisons(arg, rewrite))
-        case And(args) | Or(args) | Call(_, args):
+        case And(args) | Or(args) | Call(_, args) | Temporal(_, args):
             return replace(expression, args=tuple(with_comparisons(arg, rewrite) for arg in args))
         case Xor(left, right) | Implies(left, right) | Iff(left, right):
             sides = with_comparisons(left, rewrite), with_comparisons(right, rewrite)

@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import assert_never
 
 from fretish import syntax as s
+from fretish.checking import is_formula
 from fretish.clock import Clock, in_words
 from fretish.printer import expression
 
@@ -21,6 +22,11 @@ def meaning(sentence: s.Sentence, ticks: int | None, clock: Clock | None) -> str
         ticks: its duration in ticks; None if it has no duration.
         clock: the declared clock; None if there is none.
     """
+    if is_formula(sentence):
+        return (
+            "The whole run satisfies this formula of linear temporal logic from its first tick on. "
+            "It is no sentence of FRETish."
+        )
     where, close = _where(sentence.scope)
     q = f"`{expression(sentence.response)}`"
     negated = sentence.scope is not None and sentence.scope.kind.negates

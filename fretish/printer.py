@@ -8,6 +8,7 @@ from typing import assert_never
 
 from fretish import expressions as e
 from fretish import syntax as s
+from fretish.checking import is_formula
 from fretish.clock import duration_text
 from fretish.keywords import RESERVED
 from fretish.reading.recursion import with_recursion_limit
@@ -49,6 +50,10 @@ def sentence(tree: s.Sentence) -> str:
 
     It keeps the author's choice of `the`, and of `when`, `if`, `where` or `upon`.
     """
+    if is_formula(tree):
+        article = "the " if tree.article else ""
+        text = expression(tree.response)
+        return f"{article}{identifier(tree.component)} shall satisfy formula: {text}"
     parts = [
         f"{scope(tree.scope)}," if tree.scope else "",
         condition(tree.condition) if tree.condition else "",
@@ -143,12 +148,23 @@ def _ranked(tree: e.Expression) -> tuple[int, str]:
             return _NOT, f"!{_at(arg, _OPERAND)}"
         case e.Persistence(arg, duration):
             return _IFF, f"{_at(arg, _OR)} for {duration} ns"
+        case e.Temporal():
+            return _temporal(tree)
         case e.And(args):
             return _AND, " & ".join(_at(arg, _NOT) for arg in args)
         case e.Or(args):
             return _OR, " | ".join(_at(arg, _AND) for arg in args)
         case _:
             return _binary(tree)
+
+
+def _temporal(tree: e.Temporal) -> tuple[int, str]:
+    """`G (a -> F b)`, `a U b`: as `!` and as `&` with operands that are not themselves joined."""
+    if len(tree.args) == 1:
+        bounds = "" if tree.bounds is None else f"[{tree.bounds[0]},{tree.bounds[1]}]"
+        return _NOT, f"{tree.operator}{bounds} {_at(tree.args[0], _NOT)}"
+    left, right = (_at(arg, _NOT) for arg in tree.args)
+    return _AND, f"{left} {tree.operator} {right}"
 
 
 def _binary(

@@ -16,7 +16,7 @@ ROOT = Path(__file__).parent.parent
 ORDER = """
 monitors.kernel  monitors
 fretish.classes  fretish.system  fretish.diagnostics  fretish.reading  fretish.error_rules  fretish
-fretish.bindings  fretish.bindings.tables  fretish.english
+fretish.formulas  fretish.bindings  fretish.bindings.tables  fretish.english
 compiler.files  compiler.logic.diagrams  compiler.logic.ordering  compiler.logic.spelling
 compiler.logic  compiler.formalization  compiler.formalization.numbers
 compiler.situations  compiler.project  compiler.project.tlsf  compiler.agents

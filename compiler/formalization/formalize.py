@@ -13,24 +13,36 @@ from compiler.formalization.anticipation import anticipated
 from compiler.formalization.binding_agreement import check_binding_consistency, first_use
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.future import future, probabilistic
-from compiler.formalization.obligation import obligation
-from compiler.formalization.past import monitor_spec, past
+from compiler.formalization.obligation import Uninterpreted, boolean, obligation
+from compiler.formalization.past import (
+    monitor_spec,
+    monitor_spec_of_formula,
+    past,
+    past_of_formula,
+)
 from compiler.formalization.resolution import in_own_units, with_signal_atoms
 from compiler.logic.formula import endless
+from compiler.logic.prefixes import finite
 from compiler.logic.printing import identifier
 from fretish.ambiguities import ambiguity_warnings
 from fretish.bindings.comparisons import is_measured
 from fretish.bindings.declarations import Declarations, Modality, Variable
 from fretish.bindings.definitions import Definitions, expanded, used_definitions
 from fretish.bindings.types import type_errors, value_type_errors
-from fretish.checking import check_response_kinds, conditions, temporal_predicates, too_deep
+from fretish.checking import (
+    check_response_kinds,
+    conditions,
+    is_formula,
+    temporal_predicates,
+    too_deep,
+)
 from fretish.clock import Clock, assumed_ticks, counts_in_ticks, in_ticks
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 from fretish.documents import RequirementEntry
 from fretish.expressions import Comparison, Expression, Truth, with_comparisons
-from fretish.parser import find_errors, parse
+from fretish.formulas.sentences import find_errors, parse
 from fretish.reading.limits import with_budget
 from fretish.reading.memory import remembered
 from fretish.reading.recursion import with_recursion_limit
@@ -163,6 +175,8 @@ def _rule(
     definitions: Definitions,
 ) -> FormalizedRequirement:
     """The three formulas and the monitor specification, all from the same obligation."""
+    if is_formula(sentence):
+        return _of_formula(requirement, written, sentence, declarations, definitions)
     ahead = obligation(sentence, ticks or 0, predicates.Future())
     back = obligation(sentence, ticks or 0, predicates.Past())
     finite = future(ahead)
@@ -178,6 +192,33 @@ def _rule(
         pt=past(back),
         watch=anticipated(sentence, back, monitor_spec(back)),
         pctl=probabilistic(ahead, odds.op, odds.digits) if odds else None,
+        glossary=_glossary(declarations),
+        declarations=declarations,
+        definitions=definitions,
+    )
+
+
+def _of_formula(
+    requirement: RequirementEntry,
+    written: Sentence,
+    sentence: Sentence,
+    declarations: Declarations | None,
+    definitions: Definitions,
+) -> FormalizedRequirement:
+    """The formulas and the monitor specification of a formula."""
+    formula = boolean(sentence.response, Uninterpreted().alone())
+    watch = monitor_spec_of_formula(formula)
+    return FormalizedRequirement(
+        entry=requirement,
+        written=written,
+        sentence=sentence,
+        ticks=None,
+        clock=_clock(declarations),
+        ft_infinite=formula,
+        ft_finite=finite(formula),
+        pt=past_of_formula(formula, watch),
+        watch=watch,
+        pctl=None,
         glossary=_glossary(declarations),
         declarations=declarations,
         definitions=definitions,

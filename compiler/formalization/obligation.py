@@ -245,6 +245,8 @@ def boolean(expression: e.Expression, expand: Expand) -> f.Formula:
             return f.implies(read(left), read(right))
         case e.Iff(left, right):
             return f.iff(read(left), read(right))
+        case e.Temporal(operator, args, bounds):
+            return _temporal(operator, tuple(map(read, args)), bounds)
         case (
             e.Number()
             | e.Quantity()
@@ -257,6 +259,28 @@ def boolean(expression: e.Expression, expand: Expand) -> f.Formula:
             raise AssertionError(f"not a truth value of a sentence: {expression}")
         case _:
             assert_never(expression)
+
+
+def _temporal(
+    operator: e.TemporalOperator, args: tuple[f.Formula, ...], bounds: tuple[int, int] | None
+) -> f.Formula:
+    ahead = f.EVER if bounds is None else f.Interval(*bounds)
+    left, right = args[0], args[-1]
+    match operator:
+        case "X":
+            return f.next_(right)
+        case "F":
+            return f.eventually(right, ahead)
+        case "G":
+            return f.globally(right, ahead)
+        case "U":
+            return f.until(left, right)
+        case "R":
+            return f.release(left, right)
+        case "W":
+            return f.release(right, f.or_(left, right))
+        case _:
+            assert_never(operator)
 
 
 def variable(id: str) -> str:

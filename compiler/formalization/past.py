@@ -13,12 +13,14 @@ from __future__ import annotations
 from typing import assert_never
 
 from compiler.formalization.obligation import TRAITS, Demand, Obligation, ObligationKind, Trait
+from compiler.logic import prefixes
 from compiler.logic.formula import (
     EVER,
     FALSE,
     FIRST,
     TRUE,
     And,
+    Atom,
     Formula,
     Historically,
     Implies,
@@ -35,6 +37,7 @@ from compiler.logic.formula import (
     since,
     weak_previous,
 )
+from compiler.logic.printing import PLAIN, text
 from fretish.classes.frozen import dataclass
 from fretish.syntax import ConditionKind, ScopeKind
 from monitors.kernel.verdicts import Signals
@@ -66,6 +69,8 @@ class MonitorSpec:
     """Ticks from a trigger to its deadline; None if there is no deadline."""
     renewed: bool
     """A trigger replaces the demand of the trigger before it: only the latest one is open."""
+    missing: str = ""
+    """Why the signals say nothing: no formulas of the past have the meaning; empty: they do."""
 
     @property
     def signals(self) -> Signals[Formula]:
@@ -139,6 +144,35 @@ def monitor_spec(obligation: Obligation) -> MonitorSpec:
         deadline_ticks=_deadline_ticks(demand),
         renewed=Trait.RENEWED in traits,
     )
+
+
+def monitor_spec_of_formula(formula: Formula) -> MonitorSpec:
+    """The signals of a monitor of a formula of the future; it has one demand, from tick 0 on."""
+    try:
+        violation = prefixes.bad_prefix(formula)
+        ended = prefixes.ends_badly(formula, strict=False)
+        pending = prefixes.ends_badly(formula, strict=True)
+    except prefixes.UntranslatableError as error:
+        nothing = (FALSE,) * 6
+        return MonitorSpec(*nothing, None, None, renewed=False, missing=str(error))
+    return MonitorSpec(
+        trigger=FIRST,
+        violation=violation,
+        violation_inevitable=FALSE,
+        obligation_pending=pending,
+        violated_if_ended=ended,
+        satisfied_forever=once(prefixes.good_prefix(formula) or FALSE),
+        answer=None,
+        deadline_ticks=None,
+        renewed=False,
+    )
+
+
+def past_of_formula(formula: Formula, watch: MonitorSpec) -> Formula:
+    """The formula about the trace up to now; if there is none, the formula itself as an atom."""
+    if watch.missing:
+        return Atom(f"({text(formula, PLAIN)})")
+    return and_(historically(not_(watch.violation)), not_(watch.violated_if_ended))
 
 
 # Scope and condition -----------------------------------------------------------------------

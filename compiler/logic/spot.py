@@ -10,21 +10,27 @@ from __future__ import annotations
 
 import re
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any
 
 from compiler.logic import printing
 from compiler.logic.formula import (
+    FALSE,
+    TRUE,
     Atom,
     Eventually,
     Formula,
     Globally,
     Interval,
+    and_,
     atoms,
     children,
     longest_bound,
+    not_,
+    or_,
     rebuild,
 )
+from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.reading.recursion import with_recursion_limit
@@ -156,6 +162,93 @@ def violation(
         tuple(graph.state_number(step.s) for step in part) for part in (run.prefix, run.cycle)
     )
     return prefix, cycle
+
+
+@dataclass(frozen=True, slots=True)
+class BuchiAutomaton:
+    """A deterministic automaton; a run is accepted if accepting states recur on it.
+
+    Without a move for a valuation, no continuation is accepted. State 0 is the initial one.
+    """
+
+    moves: tuple[tuple[tuple[Formula, int], ...], ...]
+    """The moves of each state: a condition on the valuation, and the next state."""
+    accepting: frozenset[int] | None
+    """The accepting states; None: every run that does not get stuck is accepted."""
+
+
+@with_recursion_limit
+def deterministic_buchi(formula: Formula) -> BuchiAutomaton | None:
+    """The automaton of a formula of the future; None: no automaton of this kind accepts its runs.
+
+    Source: Krishnan, Puri, Brayton, Deterministic omega-automata vis-a-vis deterministic Buechi
+    automata, ISAAC 1994; Duret-Lutz et al., CAV 2022.
+    """
+    spot = _spot()
+    names = _names(*atoms(formula))
+    parity = spot.translate(printing.future(_renamed(formula, names)), "parity", "deterministic")
+    automaton = parity
+    if parity.num_sets() > 0:
+        buchi = spot.rabin_to_buchi_if_realizable(parity)
+        if buchi is None:
+            return None
+        automaton = spot.sbacc(buchi)
+    automaton.purge_dead_states()
+    assert spot.is_deterministic(automaton)
+    own = {name: Atom(atom) for atom, name in names.items()}
+    first = automaton.get_init_state_number()
+    numbers = {first: 0}
+    for state in range(automaton.num_states()):
+        numbers.setdefault(state, len(numbers))
+    dictionary = automaton.get_dict()
+
+    def condition(edge: Any) -> Formula:
+        return _condition(spot.bdd_to_formula(edge.cond, dictionary), own)
+
+    moves = tuple(
+        tuple((condition(edge), numbers[edge.dst]) for edge in automaton.out(state))
+        for state in numbers
+    )
+    if automaton.num_sets() == 0:
+        return BuchiAutomaton(moves, None)
+    recurring = (each for each in numbers if automaton.state_is_accepting(each))
+    return BuchiAutomaton(moves, frozenset(numbers[each] for each in recurring))
+
+
+def _condition(condition: Any, own: Mapping[str, Formula]) -> Formula:
+    """A Boolean formula of Spot."""
+    spot = _spot()
+    parts = [_condition(part, own) for part in condition]
+    match condition.kind():
+        case spot.op_tt:
+            return TRUE
+        case spot.op_ff:
+            return FALSE
+        case spot.op_ap:
+            return own[condition.ap_name()]
+        case spot.op_Not:
+            return not_(parts[0])
+        case spot.op_And:
+            return and_(*parts)
+        case kind:
+            assert kind == spot.op_Or
+            return or_(*parts)
+
+
+@with_recursion_limit
+def is_realizable(formula: Formula, outputs: Collection[str]) -> bool:
+    """Whether a system that sees the inputs of a tick before it chooses outputs can satisfy it.
+
+    Args:
+        formula: a formula of the future.
+        outputs: the atoms that the system chooses; all others are inputs.
+
+    Source: Renkin, Schlehuber-Caissier, Duret-Lutz, Pommellet, Dissecting ltlsynt, FMSD 2023.
+    """
+    spot = _spot()
+    names = _names(*atoms(formula), *outputs)
+    text = printing.future(_renamed(formula, names))
+    return bool(spot.solve_game(spot.ltl_to_game(text, [names[name] for name in outputs])))
 
 
 def _names(*own: str) -> dict[str, str]:

@@ -14,7 +14,7 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.fixes import Fix, apply_fixes
 from fretish.diagnostics.source import Source, Span
 from fretish.documents import RequirementEntry, requirements
-from fretish.parser import find_errors
+from fretish.formulas.sentences import find_errors
 from fretish.reading.limits import with_budget
 from fretish.reading.recursion import with_recursion_limit
 

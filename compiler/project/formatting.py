@@ -11,8 +11,8 @@ from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source
 from fretish.documents import requirements
-from fretish.parser import find_errors as of_sentence
-from fretish.parser import parse
+from fretish.formulas.sentences import find_errors as of_sentence
+from fretish.formulas.sentences import parse
 from fretish.printer import sentence
 from fretish.syntax import Sentence
 

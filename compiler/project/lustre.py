@@ -233,7 +233,7 @@ def _text(tree: e.Expression) -> str:
             return f"{_inner(left)} {'<>' if op == '!=' else op} {_inner(right)}"
         case e.Arithmetic(op, left, right):
             return f"{_inner(left)} {op} {_inner(right)}"
-        case e.Quantity() | e.Word() | e.Persistence() | e.Calculation():
+        case e.Quantity() | e.Word() | e.Persistence() | e.Calculation() | e.Temporal():
             raise AssertionError("Lustre has none")
         case _:
             assert_never(tree)

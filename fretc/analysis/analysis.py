@@ -14,7 +14,7 @@ from fretc.analysis import implications as of_runs
 from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.arena.variables import UnsupportedError
-from fretc.analysis.components import by_outputs, by_variables
+from fretc.analysis.components import about, by_outputs, by_variables
 from fretc.analysis.conflicts import Completeness, conflicts
 from fretc.analysis.controllers.circuit import Circuit
 from fretc.analysis.controllers.files import ControllerFormat
@@ -32,13 +32,14 @@ from fretc.analysis.findings import (
     Repair,
     Vacuity,
 )
+from fretc.analysis.formula_games import formula_game
 from fretc.analysis.games import job as of_games
 from fretc.analysis.implications import Consistency, ConstantRequirement, Removable
 from fretc.analysis.realizability_problem import RealizabilityProblem, stage
 from fretc.analysis.repairs import repairs
 from fretc.analysis.verdicts import component, strategy, verdict
 from fretish.bindings.declarations import Role
-from fretish.checking import NUMBERS_BACK, calls, conditions
+from fretish.checking import NUMBERS_BACK, calls, conditions, is_formula
 from fretish.classes.frozen import dataclass
 from fretish.printer import sentence as printed
 from fretish.reading.recursion import with_recursion_limit
@@ -213,11 +214,19 @@ class _Setting:
             budget = Budget(self._options.seconds)
             try:
                 found, self._built = verdict(self._stage(budget), budget)
-                yield found
             except (UnsupportedError, OutOfTimeError) as error:
-                yield not_checked(str(error))
+                found = not_checked(str(error))
+            yield self._by_formulas(found)
 
         return Job(f"can {self._name} be satisfied together?", ask, not_checked)
+
+    def _by_formulas(self, found: Component) -> Component:
+        """A component that is not checked, decided by the game of its formulas if it has any."""
+        if found.verdict is not RealizabilityVerdict.NOT_CHECKED or self._options.as_fret:
+            return found
+        near = about(self._rules, self._assumptions, self._roles)
+        answer = formula_game(self._rules, near, self._roles)
+        return found if answer is None else component(self._rules, self._roles, *answer)
 
     def consistency(self) -> Job:
         """Job: whether any run satisfies all requirements of a group.
@@ -364,6 +373,8 @@ def _of(kind: type[F], findings: Sequence[Finding]) -> tuple[F, ...]:
 
 
 def _looks_back(requirement: FormalizedRequirement) -> bool:
+    if is_formula(requirement.sentence):
+        return False
     if temporal_predicate(requirement.sentence):
         return True
     return any(NUMBERS_BACK & {*calls(each)} for each in conditions(requirement.sentence))

@@ -23,6 +23,7 @@ from fretc.analysis.arena.roles import Roles
 from fretc.analysis.arena.variables import UnsupportedError
 from fretc.analysis.components import by_outputs
 from fretc.analysis.realizability_problem import RealizabilityProblem, stage
+from fretish.checking import is_formula
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.printer import sentence as printed
@@ -74,12 +75,15 @@ def _specification(problem: RealizabilityProblem) -> str:
         UnsupportedError: TLSF cannot state the problem.
     """
     alphabet = problem.arena.alphabet
-    why = problem.left_out or next(iter(alphabet.uncertainties.values()), None) or alphabet.open
+    formulas = {each.id for each in problem.requirements if is_formula(each.sentence)}
+    beyond = [f"{id}: {why}" for id, why in problem.arena.beyond.items() if id not in formulas]
+    why = "; ".join(beyond) or next(iter(alphabet.uncertainties.values()), None) or alphabet.open
     if why is not None:
         raise UnsupportedError(why)
     every = [*problem.requirements, *problem.assumptions]
     for requirement in every:
-        if called := temporal_predicate(requirement.sentence):
+        called = temporal_predicate(requirement.sentence)
+        if called and not is_formula(requirement.sentence):
             raise UnsupportedError(f"{requirement.id} reads earlier or later ticks by `{called}`")
         if (ticks := f.longest_bound(requirement.ft_infinite)) > LONGEST:
             raise UnsupportedError(f"{requirement.id} lasts {ticks} ticks, more than {LONGEST}")

@@ -258,6 +258,8 @@ def strategy(
     """
     ids = tuple(requirement.id for requirement in setting.requirements)
     try:
+        if setting.left_out is not None:
+            raise UnsupportedError(setting.left_out)
         game = setting.game(setting.arena.counters, budget)
         controller = machine(game, game.solution(), budget)
         if form is ControllerFormat.PYTHON:

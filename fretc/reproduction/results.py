@@ -36,7 +36,7 @@ from fretc.reproduction.outcome import ALL_RUNS, FILE, ItemOutcome, Recheck, dif
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source
-from fretish.parser import parse
+from fretish.formulas.sentences import parse
 from fretish.printer import canonical
 
 Results = Mapping[tuple[str, str], Result]

@@ -140,6 +140,8 @@ def expression(tree: e.Expression, *, plain: bool = True) -> Any:
             kind = [type(tree).__name__, op]
         case e.Call(name, _):
             kind = ["call", name]
+        case e.Temporal(operator, _, bounds):
+            kind = [operator, *map(str, bounds or ())]
         case e.Persistence(_, duration):
             kind = ["for", str(duration)]
         case e.Negation() | e.Not() | e.And() | e.Or() | e.Xor() | e.Implies() | e.Iff():

@@ -92,6 +92,8 @@ class _Resolver:
                 return e.Iff(self.truth(left), self.truth(right))
             case e.Call(name, args, span) if name not in FUNCTIONS:
                 return e.Call(name, tuple(map(self._argument, args)), span)
+            case e.Temporal(_, args):
+                return e.with_children(tree, tuple(map(self.truth, args)))
             case _:
                 return self.number(tree)
 

@@ -217,6 +217,8 @@ class Code(Enum):
     OTHER_SEMANTICS = ("F623", "a TLSF specification has another semantics")
     ASSUMPTION_READS_OUTPUTS = ("F625", "an imported assumption reads outputs")
     NOT_FOR_TLSF = ("F624", "TLSF cannot state a component")
+    NOT_A_FORMULA = ("F626", "the text after `formula:` is no formula")
+    FORMULA_TOO_LARGE = ("F627", "a formula is too large to be read")
     TOO_LARGE = ("F670", "the output would be too large")
 
     SHORT_HOLD = ("F630", "the interceptor holds zero no longer than messages may be lost")

@@ -36,7 +36,7 @@ from compiler.targets.python.program import (
 )
 from compiler.targets.target import DEFAULT, Target, TargetOptions, not_expressible, stem
 from fretish import syntax as s
-from fretish.checking import LOOK_AHEAD, calls, conditions
+from fretish.checking import LOOK_AHEAD, calls, conditions, is_formula
 from fretish.classes.frozen import dataclass
 from fretish.clock import assumed_ticks
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -64,6 +64,8 @@ def refusal(requirement: FormalizedRequirement, language: str) -> Diagnostic | N
             f"more than {_MOST_LEVELS} nested operators",
             "bind parts of the expression as propositions",
         )
+    if is_formula(requirement.sentence):
+        return _without_past(requirement)
     ahead = next(
         (n for e in conditions(requirement.sentence) for n in calls(e) if n in LOOK_AHEAD), None
     )
@@ -96,6 +98,18 @@ def refusal(requirement: FormalizedRequirement, language: str) -> Diagnostic | N
     )
 
 
+def _without_past(requirement: FormalizedRequirement) -> Diagnostic | None:
+    """F601 for a formula that no formulas of the past can watch."""
+    if not requirement.watch.missing:
+        return None
+    return not_expressible(
+        "a monitor",
+        requirement,
+        f"the formula: {requirement.watch.missing}",
+        "state its parts as requirements of their own",
+    )
+
+
 def is_readable(requirement: FormalizedRequirement) -> bool:
     """Whether Python can read the monitor, which allows at most 200 nested parentheses."""
     return max(map(depth, conditions(requirement.sentence))) <= _MOST_LEVELS
@@ -114,6 +128,8 @@ def remark(requirement: FormalizedRequirement) -> Diagnostic | None:
     verification via testers, FM 2006 (monitorability).
     """
     sentence = requirement.sentence
+    if is_formula(sentence):
+        return None
     scope = sentence.scope.kind if sentence.scope else None
     traits = TRAITS[obligation(sentence, requirement.ticks or 0).demand.kind]
     later = Trait.UNMET in traits and Trait.LAST not in traits

@@ -14,6 +14,7 @@ from compiler.formalization.obligation import Obligation, ObligationKind
 from compiler.logic.diagrams import decision_diagrams as bdd
 from compiler.logic.diagrams.decision_diagrams import Function
 from fretc.analysis.arena.alphabet import Alphabet
+from fretc.analysis.arena.formula_automata import formula_counter
 from fretc.analysis.arena.memory import (
     LONGEST_DELAY,
     Bit,
@@ -29,6 +30,7 @@ from fretc.analysis.arena.memory import (
     successor,
 )
 from fretc.analysis.arena.variables import Numbers, UnsupportedError
+from fretish.checking import is_formula
 from fretish.classes.frozen import dataclass
 from fretish.reading.recursion import with_recursion_limit
 from fretish.syntax import ConditionKind, ScopeKind
@@ -58,6 +60,10 @@ def counter(
     """
     if requirement.sentence.probability is not None:
         raise UnsupportedError("it states a probability")
+    if is_formula(requirement.sentence):
+        if as_fret:
+            raise UnsupportedError("a formula has no past form of FRET")
+        return formula_counter(requirement, alphabet, Memory(fresh, shared))
     demanded = requirement.demanded
     memory = Memory(fresh, shared)
     past = PastMemory(alphabet.atom, memory)

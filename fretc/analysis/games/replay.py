@@ -10,12 +10,14 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import formula as f
+from compiler.logic.definition import holds_on_lasso
 from compiler.logic.diagrams import decision_diagrams as bdd
 from compiler.logic.evaluation import evaluate
 from fretc.analysis.arena.alphabet import Alphabet
 from fretc.analysis.arena.transition import Transition
 from fretc.analysis.games.game import Letter
 from fretc.analysis.games.game_traces import GameTrace, Run
+from fretish.checking import is_formula
 
 ROUNDS = 3
 """Number of repetitions of a loop; an obligation that stays open for all of them stays open."""
@@ -81,6 +83,8 @@ def _is_broken(
     *,
     as_fret: bool,
 ) -> bool:
+    if is_formula(requirement.sentence):
+        return _is_formula_broken(requirement, alphabet, runs, loop)
     ticks = sum(count for _, count in runs)
     violation, violated_if_ended = _watched(
         (requirement.watch.violation, requirement.watch.violated_if_ended), alphabet, runs
@@ -90,6 +94,35 @@ def _is_broken(
         return bool((violation | (violated_if_ended if as_fret else 0)) & last)
     rounds = ((1 << ticks) - 1) >> loop << loop
     return violation == 0 and violated_if_ended & rounds == rounds
+
+
+def _is_formula_broken(
+    requirement: FormalizedRequirement, alphabet: Alphabet, runs: Sequence[Run], loop: int | None
+) -> bool:
+    """Whether the trace violates a formula, by its definition on endless traces.
+
+    A prefix violates it if its operators show that (`compiler.logic.prefixes`).
+    """
+    letters = [letter for letter, count in runs for _ in range(count)]
+    if loop is not None:
+        valuations = _valuations(requirement, alphabet, letters)
+        return not holds_on_lasso(requirement.ft_infinite, valuations[:loop], valuations[loop:])
+    if requirement.watch.missing:
+        return False
+    (violation,) = _watched((requirement.watch.violation,), alphabet, runs)
+    return bool(violation >> len(letters) - 1 & 1)
+
+
+def _valuations(
+    requirement: FormalizedRequirement, alphabet: Alphabet, letters: Sequence[Letter]
+) -> list[dict[str, bool]]:
+    """The atoms of a requirement at each tick."""
+    runs = [(letter, 1) for letter in letters]
+    known = columns(alphabet, runs, f.atoms(requirement.ft_infinite))
+    return [
+        {name: bool(column >> tick & 1) for name, column in known.items()}
+        for tick in range(len(letters))
+    ]
 
 
 def kept(
@@ -114,6 +147,14 @@ def kept(
     """
     end = ((1 << tail) - 1) << len(letters) - tail
     for requirement in requirements:
+        if is_formula(requirement.sentence):
+            valuations = _valuations(requirement, alphabet, letters)
+            start = len(letters) - tail
+            if not holds_on_lasso(
+                requirement.ft_infinite, valuations[:start], valuations[start:] or valuations[-1:]
+            ):
+                return False
+            continue
         signals = (
             requirement.watch.violation,
             requirement.watch.violation_inevitable,
