@@ -53,6 +53,7 @@ SYMBOLS: dict[str, TimeUnit] = {
     "h": "hour",
 }
 """The symbols of the units of time."""
+SYMBOL_OF: dict[TimeUnit, str] = {unit: symbol for symbol, unit in SYMBOLS.items()}
 
 
 class TimeSource(StrEnum):

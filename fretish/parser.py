@@ -17,7 +17,7 @@ from typing import Any, cast
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.checking import check_depth, check_names, check_response_kinds, check_value
-from fretish.clock import SYMBOLS, whole_duration
+from fretish.clock import SYMBOL_OF, SYMBOLS, whole_duration
 from fretish.diagnostics.diagnostic import Code, Diagnostic, DiagnosticError
 from fretish.diagnostics.fixes import FixedText
 from fretish.diagnostics.messages import diagnostic
@@ -301,6 +301,10 @@ class _TreeBuilder:
     def call(self, meta: SyntaxTreeNode, children: list[Any]) -> e.Call:
         name, *args = children
         return e.Call(name.id, tuple(args), _meta_span(meta))
+
+    def duration_argument(self, meta: SyntaxTreeNode, children: list[Token]) -> e.Quantity:
+        digits, unit = children
+        return e.Quantity(str(digits), SYMBOL_OF[_UNITS[unit.type]], _meta_span(meta))
 
     def occurrence(self, meta: SyntaxTreeNode, children: list[Any]) -> e.Call:
         past = any(isinstance(c, Token) and c.type == "PREVIOUS" for c in children)

@@ -131,6 +131,8 @@ def bad_probability(span: Span) -> Diagnostic:
 def _unit(u: Unexpected) -> Diagnostic | None:
     if not u.expects(*_UNITS):
         return None
+    if not u.expects("TICK") and (u.lexeme.kind != "ID" or _unit_fix(u.lexeme.span) is None):
+        return None  # the first number in a call, which need not be a duration
     if u.lexeme.kind != "ID":
         return diagnostic("duration_without_unit", u.lexeme.span)
     return bad_unit(u.lexeme.span)

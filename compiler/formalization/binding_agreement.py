@@ -19,7 +19,7 @@ from fretish.bindings.calculations import without_calculations
 from fretish.bindings.canonical import expression as meaning
 from fretish.bindings.comparisons import FUNCTIONS, bound, is_measured
 from fretish.bindings.declarations import Declarations, MeasuredSignal, Proposition
-from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic, suggestion
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
 from fretish.printer import identifier
@@ -186,8 +186,8 @@ def unbound_propositions(
 ) -> Iterator[Diagnostic]:
     """F304 for every proposition of the sentence without a binding.
 
-    If a binding exists but has errors, those errors are reported instead. No similar name is
-    proposed: the nearest name may be another safety claim.
+    If a binding exists but has errors, those errors are reported instead. For a proposition no
+    similar name is proposed: the nearest name may be another safety claim.
     """
     for name in requirement.watched:
         if name in declarations.propositions and not declarations.mistakes:
@@ -250,8 +250,12 @@ def binding_fix(requirement: FormalizedRequirement, name: str, declarations: Dec
     file = declarations.source.name
     missing = missing_signals(requirement, name, declarations.measured)
     if missing:
+        near = {each: suggestion(each, declarations.measured) for each in missing}
+        meant = "".join(f"did you mean `{other}`? Or " for other in near.values() if other)
         tables = " and ".join(f"`[signal.{as_key(signal_name)}]`" for signal_name in missing)
-        return f"add {tables} with its `path` to {file}; `fretc bind --from LOG` drafts signals"
+        return (
+            f"{meant}add {tables} with its `path` to {file}; `fretc bind --from LOG` drafts signals"
+        )
     bind = f"add `[proposition.{as_key(name)}]` with its `expr` to {file}"
     signal = next((s.name for s in declarations.measured.values() if name in s.values), None)
     if signal is None:

@@ -17,7 +17,7 @@ from fretish.checking import conditions
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
-from fretish.expressions import Quantity, parts
+from fretish.expressions import COUNTING, Call, Expression, Quantity, parts
 from fretish.syntax import TimeUnit
 
 _WORDS: dict[str, TimeUnit] = {
@@ -57,8 +57,9 @@ def first_unit(requirements: Iterable[FormalizedRequirement]) -> Diagnostic | No
     """F352 for the first number with a unit in the sentences of a project."""
     for requirement in requirements:
         for expression in conditions(requirement.written):
+            durations = {*map(id, _counts(expression))}
             for part in parts(expression):
-                if isinstance(part, Quantity):
+                if isinstance(part, Quantity) and id(part) not in durations:
                     return diagnostic(
                         "unit_in_sentence", part.span, digits=part.digits, unit=part.unit
                     )
@@ -146,7 +147,27 @@ def _numbers(
     if duration is not None and duration.unit in _SECONDS:
         seconds = duration.amount * _SECONDS[duration.unit]
         numbers.append(((units.SECOND.dimension, seconds), duration.span))
+    numbers.extend(_durations_of_predicates(requirement))
     return numbers
+
+
+def _durations_of_predicates(
+    requirement: FormalizedRequirement,
+) -> Iterator[tuple[Exact, Span | None]]:
+    """The durations in `persisted(10 s, p)` and its like, with their spans."""
+    for expression in conditions(requirement.written):
+        for part in _counts(expression):
+            if isinstance(part, Quantity) and (
+                exact := units.quantity(f"{part.digits} {part.unit}")
+            ):
+                yield exact, part.span
+
+
+def _counts(expression: Expression) -> Iterator[Expression]:
+    """The first arguments of the predicates that count time."""
+    for part in parts(expression):
+        if isinstance(part, Call) and part.name in COUNTING:
+            yield from part.args[:-1]
 
 
 def _quantities(text: str) -> Iterator[tuple[str, Exact]]:

@@ -34,10 +34,11 @@ from fretc.logs.signals.signals import blind_zones
 from fretc.logs.signals.traces import Trace, WholeTicks, timeline, trace
 from fretc.logs.watch_records import clock_text
 from fretish import expressions as e
-from fretish.bindings.amounts import duration, scaled, seconds, shared_unit
+from fretish.bindings.amounts import duration, scaled, seconds, shared_unit, value
 from fretish.bindings.amounts import margin as margin_text
 from fretish.bindings.declarations import Declarations, MeasuredSignal, Proposition, Signal
 from fretish.classes.frozen import dataclass
+from fretish.clock import in_words
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.printer import expression
 from fretish.reading.caching import cache_by_identity
@@ -376,7 +377,7 @@ def _broken(evidence: RunResult) -> str:
 
 
 def _more(count: int) -> str:
-    return f", and at {_times(count - 1, 'other time')}" if count > 1 else ""
+    return f"; the first of {count:,} intervals" if count > 1 else ""
 
 
 def _unknown(evidence: RunResult, recording: Recording, declarations: Declarations) -> str:
@@ -396,7 +397,30 @@ def _unknown(evidence: RunResult, recording: Recording, declarations: Declaratio
         return "no whole tick of the clock lies within the log"
     if not runs:
         return f"unknown where it matters{_of_whom(evidence)}"
-    return f"undecided at {_times(ticks, 'tick')}, because inputs are unknown{_of_whom(evidence)}"
+    return (
+        f"undecided at {_share(ticks, evidence.outcome.ticks)}, because inputs are unknown"
+        f"{_of_whom(evidence)}{_remedy(evidence, recording, declarations)}"
+    )
+
+
+def _share(ticks: int, of: int) -> str:
+    """`5 of 608 ticks (0.822 %)`."""
+    return f"{ticks:,} of {_times(of, 'tick')} ({value(100 * ticks / of, '%')})"
+
+
+def _remedy(evidence: RunResult, recording: Recording, declarations: Declarations) -> str:
+    """What to change in the bindings where samples were too old; empty: they were not."""
+    old = dict.fromkeys(each.signal for each in evidence.unknown_inputs if each.cause == "too old")
+    for name in old:
+        signal = declarations.signals[name]
+        topic = recording.topics.get(signal.path.topic)
+        if signal.max_age is not None and topic is not None and topic.longest_gap_ns:
+            gap = duration(topic.longest_gap_ns / 1e9)
+            return (
+                f"; `max_age` is {in_words(signal.max_age)}, the longest gap {gap}: raise it only "
+                "if a sample may count that long"
+            )
+    return ""
 
 
 def _of_whom(evidence: RunResult) -> str:

@@ -176,7 +176,7 @@ def _first_to_look_at(subject: AuditText, *, commands: bool = True) -> Iterator[
     if refuted is not None and (result is None or longest(result) is None):
         id, where, details = refuted.requirement, f"{REFUTED} over all runs", [refuted.lines[0]]
     elif result is not None:
-        id, details = result.requirement, [*_details(result, subject)]
+        id, details = result.requirement, [*_details(result, subject), *_origin(result)]
         where = f"{word_of(result, subject.refused)} in {result.run}"
     else:
         return
@@ -185,6 +185,12 @@ def _first_to_look_at(subject: AuditText, *, commands: bool = True) -> Iterator[
     yield from (f"  {line}" for line in details)
     for index, command in enumerate(subject.places.commands(id) if commands else ()):
         yield f"  {'more:' if index == 0 else '     '} {command}"
+
+
+def _origin(result: Result) -> Iterator[str]:
+    """The time from which all printed seconds count; nothing for a log without a tick."""
+    if result.states:
+        yield f"seconds count from the first tick, at {_time(result.states[0].ns)}"
 
 
 def _details(result: Result, subject: AuditText) -> Iterator[str]:
@@ -212,14 +218,15 @@ def _violation(result: Result, violation: Violation) -> Iterator[str]:
         result: result in declared units.
         violation: one of its violations.
     """
-    first, start = violation.start_ns, result.start_ns or 0
+    first = violation.start_ns
     end = end_ns(violation.last, result.clock) or violation.end_ns
-    until = f", until {seconds((end - start) / 1e9)} ({duration((end - first) / 1e9)})"
+    length = (end - first) / 1e9
+    until = f", until {seconds(violation.start_s + length)} ({duration(length)})"
     many = len(result.violations)
     yield (
-        f"at {_time(first)}, {seconds((first - start) / 1e9)} into the log"
+        f"at {seconds(violation.start_s)} ({_time(first)})"
         f"{until if end > first else ''}"
-        f"{f'; the longest of {many:,} stretches' if many > 1 else ''}"
+        f"{f'; the longest of {many:,} intervals' if many > 1 else ''}"
     )
     known = f"; recorded: {values(result, violation)}" if violation.values else ""
     if violation.missing or known:

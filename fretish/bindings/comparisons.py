@@ -18,6 +18,7 @@ from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic, DiagnosticError
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
+from fretish.reading.toml_text import as_key
 from fretish.units import (
     DIMENSIONLESS,
     ONE,
@@ -221,11 +222,32 @@ class _ComparisonRewriter:
         _, first = measures[0]
         for part, other in measures:
             if other.unit.dimension != first.unit.dimension:
-                raise _ComparisonError(_mismatch(first, other, self._span(part)))
+                raise _ComparisonError(self._different(measures, first, other, part))
         measured = [m for _, m in measures if m.measured]
         mixed = len({m.unit.factor for m in measured}) > 1 or any(m.mixed for m in measured)
         vague = any(m.vague for _, m in measures)
         return replace(measured[0] if measured else first, mixed=mixed, vague=vague)
+
+    def _different(
+        self,
+        measures: Sequence[tuple[e.Expression, _NumberUnit]],
+        first: _NumberUnit,
+        other: _NumberUnit,
+        part: e.Expression,
+    ) -> Diagnostic:
+        """F305 for a part of another dimension than the first; a signal without unit is named."""
+        known = next(each for each in (first, other) if each.unit.dimension != DIMENSIONLESS)
+        plain = [{name.id for name in e.names(each)} for each, m in measures if not m.name]
+        for name in (next(iter(names)) for names in plain if len(names) == 1):
+            if not self._signals[name].unit_name:
+                return diagnostic(
+                    "signal_without_unit",
+                    self._span(part),
+                    name=name,
+                    key=as_key(name),
+                    unit=known.name,
+                )
+        return _mismatch(first, other, self._span(part))
 
     def _span(self, part: e.Expression) -> Span:
         return getattr(part, "span", None) or self._place

@@ -7,7 +7,7 @@ from fractions import Fraction
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.classes.frozen import dataclass
-from fretish.clock import whole_duration
+from fretish.clock import SYMBOL_OF, whole_duration
 from fretish.english.words import Phrase, Places, places
 from fretish.units import unit
 
@@ -25,7 +25,6 @@ _TIMES: dict[str, s.TimeUnit] = {
     **dict.fromkeys("min mins minute minutes".split(), "minute"),
     **dict.fromkeys("h hour hours".split(), "hour"),
 }
-_SYMBOLS = {"microsecond": "us", "millisecond": "ms", "second": "s", "minute": "min", "hour": "h"}
 _UNITS = {
     "percent": "%", "°": "deg", "degree": "deg", "degrees": "deg", "radian": "rad",
     "radians": "rad", "meter": "m", "meters": "m", "metre": "m", "metres": "m",
@@ -53,7 +52,7 @@ class Time:
         digits = str(self.duration.amount)
         if self.duration.unit == "tick":
             return e.Number(digits)
-        return e.Quantity(digits, _SYMBOLS[self.duration.unit])
+        return e.Quantity(digits, SYMBOL_OF[self.duration.unit])
 
 
 def digits_of(phrase: Phrase, index: int) -> str | None:

@@ -104,6 +104,7 @@ def test_each_sentence_of_the_page_is_read() -> None:
 Use = tuple[str, str, str]
 """A rule of the grammar, its alias, and one part of it."""
 ELSEWHERE = {
+    *(("argument", "duration_argument", unit) for unit in ("MICROSECOND", "MINUTE", "HOUR")),
     ("duration", "", "MINUS"),
     ("probability", "", "MINUS"),
     ("value", "", "expression"),

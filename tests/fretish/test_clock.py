@@ -84,6 +84,8 @@ def test_a_duration_in_a_predicate_counts_ticks(clock: Clock) -> None:
         "occurred(0.1 s, 1 min, p) & x > 3 s": "occurred(1, 600, p) & x > 3 s",
         "persists(2, occurs(200 ms, p))": "persists(2, occurs(2, p))",
         "persisted(0 h, p)": "persisted(0, p)",
+        "persisted(500 milliseconds, p)": "persisted(5, p)",
+        "occurred(0.1 sec, 1 Minute, p) & q": "occurred(1, 600, p) & q",
     }.items():
         for sentence in (
             "whenever {} the sw shall immediately satisfy q",

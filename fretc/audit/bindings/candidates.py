@@ -15,7 +15,12 @@ from enum import IntEnum
 import numpy as np
 
 from compiler.files.templating import render
-from fretc.audit.bindings.draft_signals import DraftedSignal, age_limit, bindable_fields
+from fretc.audit.bindings.draft_signals import (
+    DraftedSignal,
+    age_limit,
+    bindable_fields,
+    long_gap,
+)
 from fretc.audit.bindings.needs import MissingProposition, MissingSignal
 from fretc.audit.bindings.quantities import QUANTITIES, NumberField
 from fretc.logs.messages.leaves import FieldKind
@@ -130,7 +135,8 @@ def _signal(need: Need, topic: Topic, field: str, values: tuple[str, ...]) -> Dr
     type_ = short_type(topic.type)
     known = (each for each in QUANTITIES.get(type_, ()) if each.field == field)
     own = NumberField(field, "", _unit_of(field), reduce="min" if field.endswith("[:]") else "")
-    return DraftedSignal(need.name, topic.name, type_, next(known, own), age_limit(topic), values)
+    age, gap = age_limit(topic), long_gap(topic)
+    return DraftedSignal(need.name, topic.name, type_, next(known, own), age, values, gap)
 
 
 def _fits(need: Need, kind: FieldKind, values: tuple[str, ...]) -> bool:

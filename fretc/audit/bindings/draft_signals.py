@@ -40,6 +40,8 @@ class DraftedSignal:
     """The age limit; empty: the topic has no rate."""
     values: tuple[str, ...] = ()
     """The texts of the field in the log."""
+    gap: str = ""
+    """The longest gap between messages of the log, if it exceeds the age limit; else empty."""
 
     @property
     def path(self) -> str:
@@ -84,7 +86,8 @@ def plain_signals(overview: Overview) -> tuple[DraftedSignal, ...]:
 
 def _plain(topic: Topic, field: str, values: tuple[str, ...]) -> DraftedSignal:
     name, type_ = _word(_name(topic.name, field)), short_type(topic.type)
-    return DraftedSignal(name, topic.name, type_, NumberField(field, ""), age_limit(topic), values)
+    quantity, age, gap = NumberField(field, ""), age_limit(topic), long_gap(topic)
+    return DraftedSignal(name, topic.name, type_, quantity, age, values, gap)
 
 
 def _name(topic: str, field: str) -> str:
@@ -142,6 +145,7 @@ def _drafted(topic: Topic, leaves: Leaves, words: Words) -> list[DraftedSignal]:
             quantity,
             age_limit(topic),
             words.get(quantity.field) or (),
+            long_gap(topic),
         )
         for quantity in QUANTITIES.get(type_, ())
         if quantity.field in leaves and path(f"{topic.name}.{quantity.field}") is not None
@@ -212,8 +216,19 @@ def period_of(topic: Topic) -> int | None:
 
 def age_limit(topic: Topic) -> str:
     """How long a sample of the topic counts, as text; empty: the topic has no rate."""
+    limit = _age_limit(topic)
+    return "" if limit is None else in_words(limit)
+
+
+def _age_limit(topic: Topic) -> int | None:
     period = period_of(topic)
-    return "" if period is None else in_words(round_number(_AGES * period, _ROUND))
+    return None if period is None else round_number(_AGES * period, _ROUND)
+
+
+def long_gap(topic: Topic) -> str:
+    """The longest gap between messages as text, if it exceeds the age limit; else empty."""
+    limit, gap = _age_limit(topic), topic.longest_gap_ns or 0
+    return rounded(gap) if limit is not None and gap > limit else ""
 
 
 def round_number(least: int, steps: Sequence[int]) -> int:

@@ -26,9 +26,11 @@ expr = "range < 5 cm"
 SENTENCE = "whenever near & battery < 20 the agv shall within 5 seconds satisfy range > 1"
 
 
-def codes(title: str = "", text: str = "", params: str = "") -> list[tuple[str, str]]:
+def codes(
+    title: str = "", text: str = "", params: str = "", sentence: str = SENTENCE
+) -> list[tuple[str, str]]:
     header = f'+++\nid = "R"\ntitle = "{title}"\ntext = "{text}"\nparams = {{{params}}}\n+++\n'
-    ((entry,), wrong) = requirements(Source("r.fret", header + SENTENCE))
+    ((entry,), wrong) = requirements(Source("r.fret", header + sentence))
     declared, mistakes = read_bindings(Source("bindings.toml", BINDINGS))
     assert not wrong
     assert not mistakes
@@ -66,6 +68,14 @@ def test_another_number_is_found_at_its_place(words: str, quantity: str) -> None
     assert codes(title=words) == codes(text=words) == expected
 
 
+@pytest.mark.parametrize("duration", ["10 s", "10 seconds", "10000 ms"])
+def test_a_duration_in_a_predicate_is_a_number_of_the_sentence(duration: str) -> None:
+    sentence = f"whenever persisted({duration}, near) the agv shall immediately satisfy range > 1"
+    assert codes(title="Near for 10 s", sentence=sentence) == []
+    drift = [(Code.PROSE_DRIFT.name, "5 s")]
+    assert codes(title="Near for 5 s", sentence=sentence) == drift
+
+
 def test_a_parameter_belongs_to_a_proposition_or_to_a_signal() -> None:
     drift = Code.PARAMETER_DRIFT.name
     assert codes(params='near = "5 cm"') == codes(params='battery = "20 %"') == []
@@ -83,4 +93,5 @@ def test_the_first_unit_of_a_project_is_noted_and_bare_numbers_are_not() -> None
         return found.span.text if found is not None and found.span is not None else None
 
     assert note(SENTENCE) is None
+    assert note("the agv shall always satisfy persisted(10 s, range > 1)") is None
     assert note(SENTENCE.replace("< 20", "< 20 %").replace("> 1", "> 1 m")) == "20 %"

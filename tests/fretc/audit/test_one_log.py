@@ -13,7 +13,7 @@ from compiler.targets.python.monitor import text
 from fretc.audit.evidence.writer import RunResult, as_record
 from fretc.audit.one_log import MonitoredRequirement, audit, signals_of
 from fretc.logs.log_diagnostics import no_topic
-from fretc.logs.signals.samples import Recording, Samples
+from fretc.logs.signals.samples import Recording, Samples, Topic
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.source import Source
 from fretish.documents import requirements
@@ -150,9 +150,28 @@ def test_a_stale_response_is_no_data_and_never_a_pass() -> None:
     evidence = audited(sentence, recorded([FAR] * 5 + [NEAR], speeds))
     assert evidence.verdict == "no data"
     assert evidence.reason.startswith(
-        "undecided at 1 tick, because inputs are unknown: `still` from 4 s to 6 s (2 s): the last "
-        "sample of `v` was too old; the verdict depends on where the ticks begin: "
+        "undecided at 1 of 6 ticks (16.7 %), because inputs are unknown: `still` from 4 s to 6 s "
+        "(2 s): the last sample of `v` was too old; the verdict depends on where the ticks begin: "
     )
+
+
+def test_the_remedy_for_old_samples_names_the_limit_and_the_gap() -> None:
+    log = recorded([FAR, FAR, FAR, FAR, FAR, NEAR, FAR, FAR], [STILL] * 8)
+    known = [0, 1, 6, 7]
+    speed = log.samples["v"]
+    sparse = replace(speed, times=speed.times[known], values=speed.values[known])
+    topic = Topic("/odom", "", "cdr", 4, 0, 7 * S, longest_gap_ns=5 * S)
+    samples = {**log.samples, "v": sparse}
+    late = replace(log, samples=samples, topics={**log.topics, "/odom": topic})
+    evidence = audited("whenever near the rover shall immediately satisfy still", late)
+    assert evidence.verdict == "no data"
+    assert "; `max_age` is 3 s, the longest gap 5 s: raise it only if a sample" in evidence.reason
+
+
+def test_violations_after_the_first_are_counted_as_intervals() -> None:
+    log = recorded([NEAR, FAR] * 4, [MOVING] * 8)
+    evidence = audited("whenever near the rover shall immediately satisfy still", log)
+    assert "; the first of 4 intervals" in evidence.reason
 
 
 def test_a_damaged_log_shows_no_pass_but_a_violation() -> None:

@@ -146,9 +146,10 @@ def test_the_worst_is_named_with_title_value_limit_times_and_commands(robot: Fre
     assert listed.startswith("run.mcap\n  ✘ Enough is left (R1)  violated")
     assert worst == (
         "worst: Enough is left (R1) violated in run.mcap\n"
-        "  at 1000 s by the clock of the log, 0 s into the log, until 0.6 s (600 ms)\n"
+        "  at 0 s (1000 s by the clock of the log), until 0.6 s (600 ms)\n"
         "  demanded: charged; recorded: charge = 0 %\n"
         "  limit: charge > 5 % (charged); from 0 % to 11 % in this run\n"
+        "  seconds count from the first tick, at 1000 s by the clock of the log\n"
         "  more: fretc report --evidence 'e v.json'\n"
         "        fretc explain R1\n"
         "5 of 7 situations seen, 2 never: `fretc coverage --evidence 'e v.json'` lists them\n"

@@ -345,6 +345,13 @@ def test_check_refuses_what_an_audit_refuses(good: Fretc, old: str, new: str, co
     assert f"{code} " in run.err
 
 
+def test_a_misspelt_signal_is_answered_with_the_declared_one(good: Fretc) -> None:
+    edited("r1.fret", "satisfy stopped", "satisfy stopped & claerance < 3")
+    run = good("check")
+    assert run.status == 2
+    assert "help: did you mean `clearance`? Or add `[signal.claerance]` with its `path`" in run.err
+
+
 def test_a_comparison_of_what_is_no_signal_is_shown_itself_with_the_signal(good: Fretc) -> None:
     edited("r1.fret", "satisfy stopped", "satisfy stopped & range < 3")
     run = good("check")

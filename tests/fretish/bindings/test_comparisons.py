@@ -265,3 +265,17 @@ def test_raw_arithmetic_is_the_physical_one(
 def test_a_number_is_written_exactly(exact: Fraction) -> None:
     tree = plain(exact)
     assert raw(tree, {}) == exact
+
+
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [("tally < 30 m", "30 m"), ("30 m > tally", "tally"), ("tally + 1 < way", "way")],
+)
+def test_a_signal_without_a_unit_is_named(text: str, place: str) -> None:
+    wrong = in_own_units(comparison(text), SIGNALS, Source("r.fret", text).span())
+    assert isinstance(wrong, Diagnostic)
+    assert wrong.span is not None
+    unit_name = "cm" if "way" in text else "m"
+    assert (wrong.code, wrong.span.text) == (Code.UNIT_MISMATCH, place)
+    assert wrong.message.startswith("`tally` has no unit in the bindings, so it cannot")
+    assert (wrong.help or "").startswith(f'add `unit = "{unit_name}"` to `[signal.tally]` if')

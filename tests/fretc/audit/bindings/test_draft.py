@@ -73,6 +73,14 @@ def test_a_signal_is_known_between_two_messages_of_its_topic(tmp_path: Path) -> 
     assert declarations.clock.period == 100 * MS
 
 
+def test_a_gap_longer_than_the_age_limit_is_stated_beside_it(tmp_path: Path) -> None:
+    messages = [*every(100 * MS, 20), *every(100 * MS, 20, start=1000 * S + 2800 * MS)]
+    text = drafted(write(tmp_path / "a.mcap", messages))
+    assert declare(text).signals["x"].max_age == 400 * MS
+    assert 'max_age = "400 ms"  # the longest gap in this log, 900 ms, exceeds it' in text
+    assert "exceeds it" not in drafted(write(tmp_path / "b.mcap", every(100 * MS, 20)))
+
+
 def test_bursts_do_not_make_a_sample_old_at_once(tmp_path: Path) -> None:
     """Three messages within 2 ms, every 100 ms: most steps are short."""
     messages = [m for i in range(20) for m in every(MS, 3, start=1000 * S + i * 100 * MS)]
