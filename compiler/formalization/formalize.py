@@ -14,9 +14,9 @@ from compiler.formalization.binding_agreement import check_binding_consistency, 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.future import future, probabilistic
 from compiler.formalization.obligation import obligation
-from compiler.formalization.past import monitor_spec, past
+from compiler.formalization.past import MonitorSpec, monitor_spec, past
 from compiler.formalization.resolution import in_own_units, with_signal_atoms
-from compiler.logic.formula import endless
+from compiler.logic.formula import Formula, endless
 from compiler.logic.printing import identifier
 from fretish.ambiguities import ambiguity_warnings
 from fretish.bindings.comparisons import is_measured
@@ -24,6 +24,7 @@ from fretish.bindings.declarations import Declarations, Modality, Variable
 from fretish.bindings.definitions import Definitions, expanded, used_definitions
 from fretish.bindings.types import type_errors, value_type_errors
 from fretish.checking import check_response_kinds, conditions, temporal_predicates, too_deep
+from fretish.classes.frozen import dataclass
 from fretish.clock import Clock, assumed_ticks, counts_in_ticks, in_ticks
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.messages import diagnostic
@@ -32,7 +33,7 @@ from fretish.documents import RequirementEntry
 from fretish.expressions import Comparison, Expression, Truth, with_comparisons
 from fretish.parser import find_errors, parse
 from fretish.reading.limits import with_budget
-from fretish.reading.memory import remembered
+from fretish.reading.memory import remembered, remembered_by_value
 from fretish.reading.recursion import with_recursion_limit
 from fretish.syntax import Sentence, with_expressions
 
@@ -162,25 +163,48 @@ def _rule(
     declarations: Declarations | None,
     definitions: Definitions,
 ) -> FormalizedRequirement:
-    """The three formulas and the monitor specification, all from the same obligation."""
-    ahead = obligation(sentence, ticks or 0, predicates.Future())
-    back = obligation(sentence, ticks or 0, predicates.Past())
-    finite = future(ahead)
-    odds = sentence.probability
+    formulas = _formulas(sentence, ticks)
     return FormalizedRequirement(
         entry=requirement,
         written=written,
         sentence=sentence,
         ticks=ticks,
         clock=_clock(declarations),
+        ft_infinite=formulas.ft_infinite,
+        ft_finite=formulas.ft_finite,
+        pt=formulas.pt,
+        watch=formulas.watch,
+        pctl=formulas.pctl,
+        glossary=_glossary(declarations),
+        declarations=declarations,
+        definitions=definitions,
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Formulas:
+    """The formulas of a `FormalizedRequirement`."""
+
+    ft_infinite: Formula
+    ft_finite: Formula
+    pt: Formula
+    watch: MonitorSpec
+    pctl: Formula | None
+
+
+@remembered_by_value
+def _formulas(sentence: Sentence, ticks: int | None) -> _Formulas:
+    """The three formulas and the monitor specification, all from the same obligation."""
+    ahead = obligation(sentence, ticks or 0, predicates.Future())
+    back = obligation(sentence, ticks or 0, predicates.Past())
+    finite = future(ahead)
+    odds = sentence.probability
+    return _Formulas(
         ft_infinite=endless(finite),
         ft_finite=finite,
         pt=past(back),
         watch=anticipated(sentence, back, monitor_spec(back)),
         pctl=probabilistic(ahead, odds.op, odds.digits) if odds else None,
-        glossary=_glossary(declarations),
-        declarations=declarations,
-        definitions=definitions,
     )
 
 

@@ -125,6 +125,7 @@ class OpenProject:
         quick = {*reading.diagnostics}
         self._slow_ones = tuple(each for each in self._everything if each not in quick)
         self._changed.clear()
+        self.occurrences(texts)  # so that the first question about a name need not wait for them
 
     def _computed(
         self, reading: Reading, texts: Mapping[str, str], stop: Callable[[], bool]
