@@ -7,7 +7,7 @@ from typing import Any
 
 from lsprotocol import types as lsp
 
-from fretc.lsp import actions, completion, hover, outline, renaming
+from fretc.lsp import actions, completion, hover, lenses, outline, renaming
 from fretc.lsp.view import View
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.fixes import Fix
@@ -100,5 +100,6 @@ ANSWERS: Mapping[str, tuple[Answer, Any]] = {
         lsp.SemanticTokensLegend(list(outline.TOKEN_TYPES), []),
     ),
     lsp.TEXT_DOCUMENT_INLAY_HINT: (_hints, None),
+    lsp.TEXT_DOCUMENT_CODE_LENS: (_of_file(lenses.lenses), lsp.CodeLensOptions()),
 }
 """Method → its answer, and the options of the server."""
