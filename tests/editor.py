@@ -14,7 +14,10 @@ CAPABILITIES = {
         "workspaceEdit": {"documentChanges": True},
         "codeLens": {"refreshSupport": True},
     },
-    "textDocument": {"publishDiagnostics": {"relatedInformation": True}},
+    "textDocument": {
+        "publishDiagnostics": {"relatedInformation": True},
+        "codeAction": {"resolveSupport": {"properties": ["edit"]}},
+    },
 }
 
 

@@ -217,10 +217,13 @@ def _workspace_symbols(ls: Server, params: lsp.WorkspaceSymbolParams) -> list[ls
 
 
 def _initialize(ls: Server, params: lsp.InitializeParams) -> None:
-    """Offer the commands of code lenses to a client that asks for them.
+    """Note what the client can do, and offer the commands of code lenses if it asks for them.
 
-    Others have commands of the same names themselves, and could not register them twice.
+    Other clients have commands of the same names themselves, and could not register them twice.
     """
+    document = params.capabilities.text_document
+    support = document.code_action.resolve_support if document and document.code_action else None
+    ls.session.resolves_actions = support is not None and "edit" in support.properties
     options = params.initialization_options
     if isinstance(options, Mapping) and options.get("commands") is True:
         for name in commands.COMMANDS:

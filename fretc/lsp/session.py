@@ -17,6 +17,7 @@ from compiler.files.text_files import read, unsaved_texts
 from compiler.project.folder import load_folder
 from compiler.project.paths import BINDINGS, HAZARDS
 from compiler.project.project import Project
+from fretc.audit.evidence.result_summaries import ResultSummaries
 from fretc.checking.diagnostics import (
     ProjectCheck,
     SideFiles,
@@ -24,6 +25,7 @@ from fretc.checking.diagnostics import (
     quick_diagnostics,
 )
 from fretc.checking.statuses import RequirementStatus, statuses
+from fretc.logs.storage.log_names import path_of
 from fretc.lsp.names import Occurrence, occurrences
 from fretc.terminal.options import default_evidence
 from fretish.classes.frozen import dataclass
@@ -62,6 +64,7 @@ class OpenProject:
         self._slow_ones: tuple[Diagnostic, ...] = ()
         """The diagnostics that only `complete` gives, of its last run."""
         self._statuses: Mapping[RequirementEntry, RequirementStatus] = {}
+        self._latest_log = ""
         self._changed: set[str] = set()
         """The files that have changed since then."""
 
@@ -73,6 +76,11 @@ class OpenProject:
     def path(self, source: Source) -> str:
         """The absolute path of a source."""
         return os.path.normpath(os.path.join(self.root, source.name))
+
+    @property
+    def latest_log(self) -> str:
+        """The name of the latest audited log that lies in the root; "" if there is none."""
+        return self._latest_log if self.is_complete else ""
 
     def relative(self, path: str) -> str:
         """A path as a command in the root would name it."""
@@ -143,6 +151,7 @@ class OpenProject:
         self._slow_ones = tuple(each for each in check.diagnostics if each not in quick)
         self._changed.clear()
         self._check, self._statuses = check, statuses
+        self._latest_log = self._log_of(check.summaries)
         self.occurrences(texts)  # so that the first question about a name need not wait for them
 
     def _computed(
@@ -156,6 +165,16 @@ class OpenProject:
                 return check, {each.entry: each for each in statuses(check)}
         except ExceededError as error:
             return ProjectCheck((*reading.diagnostics, exceeded(error))), {}
+
+    def _log_of(self, summaries: ResultSummaries | None) -> str:
+        if summaries is None:
+            return ""
+        runs = sorted(summaries.source.runs(), key=lambda run: run.start_ns or 0, reverse=True)
+        for run in runs:
+            path = os.path.realpath(os.path.join(self.root, path_of(run.run)))
+            if _is_below(path, os.path.realpath(self.root)) and os.path.isfile(path):
+                return run.run
+        return ""
 
     def _across(self, project: Project) -> ProjectCheck:
         evidence = default_evidence()
@@ -184,6 +203,8 @@ class Session:
     def __init__(self) -> None:
         self.roots: list[str] = []
         """The workspace folders."""
+        self.resolves_actions = False
+        """Whether the client asks for the edit of an action when the user chooses it."""
         self.texts: dict[str, str] = {}
         """Path → text, without a byte order mark, of each open file."""
         self.projects: dict[str, OpenProject] = {}
