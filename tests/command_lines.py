@@ -116,6 +116,7 @@ CHEAP: Mapping[str, Sequence[str]] = {
 ELSEWHERE = {
     ("watch", "publish"): "opens a server, or needs a robot",
     ("report", "opens"): "starts a browser",
+    ("check", "watch"): "waits for changes",
     ("watch", "follow"): "waits for what is still to come",
     ("simulate", ""): "simulates a mission of its own, and reads no project",
     ("completion", ""): "prints a script for a shell",

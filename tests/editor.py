@@ -10,19 +10,27 @@ from fretc.lsp.server import make_server, uri_of
 from fretc.lsp.session import OpenProject
 
 CAPABILITIES = {
-    "workspace": {"workspaceEdit": {"documentChanges": True}},
-    "textDocument": {"publishDiagnostics": {"relatedInformation": True}},
+    "workspace": {
+        "workspaceEdit": {"documentChanges": True},
+        "codeLens": {"refreshSupport": True},
+    },
+    "textDocument": {
+        "publishDiagnostics": {"relatedInformation": True},
+        "codeAction": {"resolveSupport": {"properties": ["edit"]}},
+    },
 }
 
 
 class Editor:
     """A client that has opened one workspace folder. Texts are sent, and nothing is awaited."""
 
-    def __init__(self, root: Path, encoding: str = "utf-16") -> None:
+    def __init__(self, root: Path, encoding: str = "utf-16", **options: Any) -> None:
         self.root = root
         self.diagnostics: dict[str, list[Any]] = {}
         """Path → what the server has published last."""
         self.log: list[str] = []
+        self.messages: list[str] = []
+        self.refreshes = 0
         self._loop = asyncio.new_event_loop()
         self._server = make_server()
         self._server.protocol.set_writer(self)
@@ -37,6 +45,7 @@ class Editor:
             rootUri=uri_of(str(root)),
             workspaceFolders=folders,
             capabilities={**CAPABILITIES, "general": general},
+            initializationOptions=options,
         )
         self.tell("initialized")
 
@@ -45,6 +54,10 @@ class Editor:
         if message.get("method") == "textDocument/publishDiagnostics":
             path = message["params"]["uri"].removeprefix("file://")
             self.diagnostics[path] = message["params"]["diagnostics"]
+        elif message.get("method") == "window/showMessage":
+            self.messages.append(message["params"]["message"])
+        elif message.get("method") == "workspace/codeLens/refresh":
+            self.refreshes += 1
         elif message.get("method") == "window/logMessage":
             self.log.append(message["params"]["message"])
         elif "method" not in message:

@@ -15,13 +15,14 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.future import future, probabilistic
 from compiler.formalization.obligation import Uninterpreted, boolean, obligation
 from compiler.formalization.past import (
+    MonitorSpec,
     monitor_spec,
     monitor_spec_of_formula,
     past,
     past_of_formula,
 )
 from compiler.formalization.resolution import in_own_units, with_signal_atoms
-from compiler.logic.formula import endless
+from compiler.logic.formula import Formula, endless
 from compiler.logic.prefixes import finite
 from compiler.logic.printing import identifier
 from fretish.ambiguities import ambiguity_warnings
@@ -36,6 +37,7 @@ from fretish.checking import (
     temporal_predicates,
     too_deep,
 )
+from fretish.classes.frozen import dataclass
 from fretish.clock import Clock, assumed_ticks, counts_in_ticks, in_ticks
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.messages import diagnostic
@@ -44,7 +46,7 @@ from fretish.documents import RequirementEntry
 from fretish.expressions import Comparison, Expression, Truth, with_comparisons
 from fretish.formulas.sentences import find_errors, parse
 from fretish.reading.limits import with_budget
-from fretish.reading.memory import remembered
+from fretish.reading.memory import remembered, remembered_by_value
 from fretish.reading.recursion import with_recursion_limit
 from fretish.syntax import Sentence, with_expressions
 
@@ -174,55 +176,56 @@ def _rule(
     declarations: Declarations | None,
     definitions: Definitions,
 ) -> FormalizedRequirement:
-    """The three formulas and the monitor specification, all from the same obligation."""
-    if is_formula(sentence):
-        return _of_formula(requirement, written, sentence, declarations, definitions)
-    ahead = obligation(sentence, ticks or 0, predicates.Future())
-    back = obligation(sentence, ticks or 0, predicates.Past())
-    finite = future(ahead)
-    odds = sentence.probability
+    formulas = _formulas(sentence, ticks)
     return FormalizedRequirement(
         entry=requirement,
         written=written,
         sentence=sentence,
         ticks=ticks,
         clock=_clock(declarations),
-        ft_infinite=endless(finite),
-        ft_finite=finite,
+        ft_infinite=formulas.ft_infinite,
+        ft_finite=formulas.ft_finite,
+        pt=formulas.pt,
+        watch=formulas.watch,
+        pctl=formulas.pctl,
+        glossary=_glossary(declarations),
+        declarations=declarations,
+        definitions=definitions,
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Formulas:
+    """The formulas of a `FormalizedRequirement`."""
+
+    ft_infinite: Formula
+    ft_finite: Formula
+    pt: Formula
+    watch: MonitorSpec
+    pctl: Formula | None
+
+
+@remembered_by_value
+def _formulas(sentence: Sentence, ticks: int | None) -> _Formulas:
+    """The formulas and the monitor specification, all from one obligation or one formula."""
+    if is_formula(sentence):
+        return _of_formula(boolean(sentence.response, Uninterpreted().alone()))
+    ahead = obligation(sentence, ticks or 0, predicates.Future())
+    back = obligation(sentence, ticks or 0, predicates.Past())
+    ft_finite = future(ahead)
+    odds = sentence.probability
+    return _Formulas(
+        ft_infinite=endless(ft_finite),
+        ft_finite=ft_finite,
         pt=past(back),
         watch=anticipated(sentence, back, monitor_spec(back)),
         pctl=probabilistic(ahead, odds.op, odds.digits) if odds else None,
-        glossary=_glossary(declarations),
-        declarations=declarations,
-        definitions=definitions,
     )
 
 
-def _of_formula(
-    requirement: RequirementEntry,
-    written: Sentence,
-    sentence: Sentence,
-    declarations: Declarations | None,
-    definitions: Definitions,
-) -> FormalizedRequirement:
-    """The formulas and the monitor specification of a formula."""
-    formula = boolean(sentence.response, Uninterpreted().alone())
+def _of_formula(formula: Formula) -> _Formulas:
     watch = monitor_spec_of_formula(formula)
-    return FormalizedRequirement(
-        entry=requirement,
-        written=written,
-        sentence=sentence,
-        ticks=None,
-        clock=_clock(declarations),
-        ft_infinite=formula,
-        ft_finite=finite(formula),
-        pt=past_of_formula(formula, watch),
-        watch=watch,
-        pctl=None,
-        glossary=_glossary(declarations),
-        declarations=declarations,
-        definitions=definitions,
-    )
+    return _Formulas(formula, finite(formula), past_of_formula(formula, watch), watch, pctl=None)
 
 
 @remembered

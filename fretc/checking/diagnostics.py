@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TypeVar
 
 from compiler.files.dates import today
+from compiler.logic.claims import Proof
 from compiler.project.paths import sibling_path
 from compiler.project.project import Project
 from compiler.project.stated_numbers import first_unit
@@ -43,28 +44,41 @@ Together = Callable[[Project, AnalyzedSet | None], Iterable[Diagnostic]]
 """A check whether all requirements can be satisfied together."""
 
 
+@dataclass(frozen=True, slots=True)
+class ProjectCheck:
+    """The diagnostics of a project, and the results that they were compared with."""
+
+    diagnostics: tuple[Diagnostic, ...]
+    """Each once, in the order of the checks."""
+    project: Project | None = None
+    """None if the check could not be completed."""
+    assessments: tuple[Assessment, ...] = ()
+    """One for each requirement."""
+    summaries: ResultSummaries | None = None
+    """The results of the last audit; None if there is no evidence."""
+    proofs: tuple[Proof, ...] = ()
+    analyzed: AnalyzedSet | None = None
+    """The last analysis of the set; None if there is none."""
+
+
 def project_diagnostics(
     project: Project, files: SideFiles, together: Together | None = None
 ) -> tuple[Diagnostic, ...]:
-    """All diagnostics of a project, each once, in the order of the checks.
+    """All diagnostics of a project; the arguments are those of `check_project`."""
+    return check_project(project, files, together).diagnostics
+
+
+def check_project(
+    project: Project, files: SideFiles, together: Together | None = None
+) -> ProjectCheck:
+    """Check a whole project.
 
     Args:
         project: with or without errors.
         files: the files beside it.
         together: takes the requirements without errors; None: it is not checked.
     """
-    return tuple(dict.fromkeys((*project.diagnostics, *_across(project, files, together))))
-
-
-def quick_diagnostics(project: Project) -> tuple[Diagnostic, ...]:
-    """The diagnostics that need neither reviews, evidence nor generated files, each once."""
-    return tuple(dict.fromkeys((*project.diagnostics, *_units(project), *_refusals(project))))
-
-
-def _across(project: Project, files: SideFiles, together: Together | None) -> Iterator[Diagnostic]:
-    """Diagnostics of all files together."""
     wrong: list[Diagnostic] = []
-    yield from _units(project)
     results = _evidence(files, wrong)
     proofs = _value(proven(files.verification), wrong) or ()
     analyzed = _value(known_analysis(files.analysis), wrong)
@@ -75,17 +89,27 @@ def _across(project: Project, files: SideFiles, together: Together | None) -> It
         known, mistakes = read_waivers(waived, [r.id for r in project.requirements], today())
         waivers = {id: waiver for id, waiver in known.items() if waiver.covers(today())}
         wrong.extend(mistakes)
-    yield from wrong
     summaries = ResultSummaries.of(results) if results else None
     assessed = assessments(project, summaries, lock, waivers, proofs, analyzed)
-    if path is not None:
-        yield from _withdrawn(project, assessed, lock, path)
-    yield from stale_evidence(assessed, summaries, files.evidence)
-    yield from idle_waivers(assessed)
-    yield from _refusals(project)
-    if together is not None:
-        yield from together(project.sound, analyzed)
-    yield from warnings(project, [each.review_status for each in assessed], lock, results)
+    diagnostics = (
+        *project.diagnostics,
+        *_units(project),
+        *wrong,
+        *(_withdrawn(project, assessed, lock, path) if path is not None else ()),
+        *stale_evidence(assessed, summaries, files.evidence),
+        *idle_waivers(assessed),
+        *_refusals(project),
+        *(together(project.sound, analyzed) if together is not None else ()),
+        *warnings(project, [each.review_status for each in assessed], lock, results),
+    )
+    return ProjectCheck(
+        tuple(dict.fromkeys(diagnostics)), project, assessed, summaries, proofs, analyzed
+    )
+
+
+def quick_diagnostics(project: Project) -> tuple[Diagnostic, ...]:
+    """The diagnostics that need neither reviews, evidence nor generated files, each once."""
+    return tuple(dict.fromkeys((*project.diagnostics, *_units(project), *_refusals(project))))
 
 
 def _evidence(files: SideFiles, diagnostics: list[Diagnostic]) -> EvidenceSource | None:

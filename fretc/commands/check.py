@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import time
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 import click
 
@@ -21,11 +22,14 @@ from fretc.terminal.options import (
     verification_option,
 )
 from fretc.terminal.output import (
+    EVIDENCE,
     EXIT_INCONCLUSIVE,
     EXIT_OK,
     EXIT_USAGE,
+    STORE,
     or_fail,
     print_diagnostic_groups,
+    print_diagnostics,
     print_status,
     write_outputs,
 )
@@ -59,6 +63,12 @@ if TYPE_CHECKING:
     help="First apply the safe fixes to the requirement files, such as "
     "`shall` for `should`. Each fix is listed.",
 )
+@click.option(
+    "--watch",
+    is_flag=True,
+    help="Check again after each change of a file, until Ctrl-C. The exit status is that of the "
+    "last check.",
+)
 @format_option()
 def check(
     requirements: str,
@@ -69,6 +79,7 @@ def check(
     analysis: str | None,
     analyze: bool,
     fix: bool,
+    watch: bool,
     output_format: str,
 ) -> None:
     """Report errors and warnings of a project, before any run.
@@ -86,13 +97,65 @@ def check(
     from compiler.project.folder import load_folder
     from fretc.checking.diagnostics import SideFiles, project_diagnostics
 
+    if watch and output_format == "json":
+        raise click.UsageError("--watch cannot be combined with --format json")
     if fix:
         _fix(requirements)
-    project = or_fail(load_folder(requirements, bindings, hazards))
     named = is_given("evidence")
-    files = SideFiles(requirements, evidence_path(evidence), verification, analysis, named)
-    together = _together if analyze else None
-    _finish(project_diagnostics(project, files, together), project.requirements, output_format)
+
+    def once() -> NoReturn:
+        project = or_fail(load_folder(requirements, bindings, hazards))
+        files = SideFiles(requirements, evidence_path(evidence), verification, analysis, named)
+        together = _together if analyze else None
+        _finish(project_diagnostics(project, files, together), project.requirements, output_format)
+
+    if watch:
+        _again_and_again(once, requirements, (bindings, hazards, evidence, verification, analysis))
+    once()
+
+
+_PAUSE = 0.3
+"""Seconds between two looks at the files."""
+
+
+def _again_and_again(
+    once: Callable[[], NoReturn], requirements: str, named: Sequence[str | None]
+) -> NoReturn:
+    """Check after each change, and exit with the status of the last check when Ctrl-C comes.
+
+    Args:
+        once: checks the present files, prints the result and exits.
+        requirements: the folder of the requirements.
+        named: the other files that the user names.
+    """
+    from fretc.analysis.evidence import DEFAULT as ANALYSIS
+    from fretc.checking.inputs import stamps
+    from fretc.verification.reader import DEFAULT as VERIFICATION
+    from fretish.reading.limits import ExceededError, exceeded
+    from fretish.reading.memory import Memory
+
+    beside = (*named, EVIDENCE, STORE, VERIFICATION, ANALYSIS)
+    memory, status = Memory(), EXIT_OK
+    before: frozenset[object] | None = None
+    try:
+        while True:
+            present = stamps(requirements, beside)
+            if present != before:
+                before = present
+                click.clear()  # of a terminal only
+                try:
+                    with memory.active():
+                        once()
+                except SystemExit as exit_:
+                    status = int(exit_.code or EXIT_OK)
+                except ExceededError as error:
+                    print_diagnostics([exceeded(error)])
+                    status = EXIT_USAGE
+                print_status(visible(f"waiting for a change of {requirements}; Ctrl-C ends"))
+                print_status("")
+            time.sleep(_PAUSE)
+    except KeyboardInterrupt:
+        raise SystemExit(status) from None
 
 
 def _together(project: Project, known: AnalyzedSet | None) -> Iterator[Diagnostic]:
@@ -135,7 +198,7 @@ def _finish(
     diagnostics: tuple[Diagnostic, ...],
     requirements: Sequence[RequirementEntry],
     output_format: str,
-) -> None:
+) -> NoReturn:
     """Print the diagnostics and exit with the matching status."""
     from compiler.files.templating import to_json
 

@@ -11,6 +11,7 @@ from compiler.files.text_files import unsaved_texts
 from compiler.project.fixes import fixed_files
 from compiler.project.formatting import formatted_files
 from compiler.project.paths import BINDINGS
+from fretc.lsp import suggestions
 from fretc.lsp.session import with_real_paths
 from fretc.lsp.view import View, start_of
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -64,6 +65,7 @@ def _is_kind(kind: str, wanted: str) -> bool:
 
 def _quick_fixes(view: View, wanted: lsp.Range) -> Iterator[lsp.CodeAction]:
     start, end = view.positions.offset(wanted.start), view.positions.offset(wanted.end)
+    written: set[RequirementEntry | None] = set()
     for diagnostic in view.open_project.diagnostics(view.session.texts):
         span = diagnostic.span
         if span is None or not view.is_here(span) or span.start > end or span.end < start:
@@ -71,7 +73,12 @@ def _quick_fixes(view: View, wanted: lsp.Range) -> Iterator[lsp.CodeAction]:
         if diagnostic.fix is not None:
             yield _fix(view, diagnostic, diagnostic.fix)
         if diagnostic.code is Code.UNBOUND:
+            yield from suggestions.drafts(view, diagnostic)
             yield from _binding(view, diagnostic)
+        entry = view.entry_at(span.start)
+        if entry not in written and (actions := [*suggestions.readings(view, diagnostic)]):
+            written.add(entry)
+            yield from actions
         if diagnostic.is_open and explanation(diagnostic.code).accept == "requirement":
             yield from _acceptance(view, diagnostic)
 
@@ -87,18 +94,13 @@ def _binding(view: View, diagnostic: Diagnostic) -> Iterator[lsp.CodeAction]:
     """Add the table of an unbound proposition, whose expression is left to the author."""
     assert diagnostic.span is not None
     occurrence = view.occurrence_at(diagnostic.span.start)
-    path = os.path.join(view.open_project.folder, BINDINGS)
-    text = view.session.text(path)
     if occurrence is None or occurrence.span.text != diagnostic.span.text.strip('"'):
         return  # a comparison: which of its signals are missing is in the help
-    if text is None:
-        return
-    end = View(path, view.open_project, view.session, view.encoding, view.uri)
-    gap = "" if not text or text.endswith("\n\n") else "\n" if text.endswith("\n") else "\n\n"
-    table = f'{gap}[proposition.{as_key(occurrence.name)}]\nexpr = "TODO"\nrole = "input"\n'
-    place = end.positions.range(len(text), len(text))
-    title = f"add `[proposition.{as_key(occurrence.name)}]` to {BINDINGS}"
-    yield _action(title, diagnostic, {view.uri(path): [lsp.TextEdit(place, table)]})
+    path = os.path.join(view.open_project.folder, BINDINGS)
+    edit = suggestions.appended(view, path, suggestions.empty_table(occurrence.name))
+    if edit is not None and edit.changes is not None:
+        title = f"add `[proposition.{as_key(occurrence.name)}]` to {BINDINGS}"
+        yield _action(title, diagnostic, edit.changes)
 
 
 def _acceptance(view: View, diagnostic: Diagnostic) -> Iterator[lsp.CodeAction]:

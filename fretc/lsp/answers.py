@@ -7,7 +7,7 @@ from typing import Any
 
 from lsprotocol import types as lsp
 
-from fretc.lsp import actions, completion, hover, outline, renaming
+from fretc.lsp import actions, completion, hover, lenses, outline, renaming, suggestions
 from fretc.lsp.view import View
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.fixes import Fix
@@ -73,6 +73,20 @@ def _code_actions(find: FindView, params: lsp.CodeActionParams) -> Any:
     )
 
 
+def _resolved(find: FindView, action: lsp.CodeAction) -> lsp.CodeAction:
+    """The action with its edit."""
+    data = action.data if isinstance(action.data, Mapping) else {}
+    uri = data.get("uri")
+    view = find(uri) if isinstance(uri, str) else None
+    if view is None or action.edit is not None:
+        return action
+    edit = suggestions.drafted(view, data)
+    if isinstance(edit, Diagnostic):
+        raise RefusalError(edit)
+    action.edit = edit
+    return action
+
+
 def _hints(find: FindView, params: lsp.InlayHintParams) -> Any:
     return _of_file(lambda view: outline.inlay_hints(view, params.range))(find, params)
 
@@ -91,8 +105,11 @@ ANSWERS: Mapping[str, tuple[Answer, Any]] = {
     lsp.TEXT_DOCUMENT_FORMATTING: (_of_file(actions.formatting), None),
     lsp.TEXT_DOCUMENT_CODE_ACTION: (
         _code_actions,
-        lsp.CodeActionOptions([lsp.CodeActionKind.QuickFix, actions.FIX_ALL]),
+        lsp.CodeActionOptions(
+            [lsp.CodeActionKind.QuickFix, actions.FIX_ALL], resolve_provider=True
+        ),
     ),
+    lsp.CODE_ACTION_RESOLVE: (_resolved, None),
     lsp.TEXT_DOCUMENT_DOCUMENT_SYMBOL: (_of_file(outline.document_symbols), None),
     lsp.TEXT_DOCUMENT_FOLDING_RANGE: (_of_file(outline.folding), None),
     lsp.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL: (
@@ -100,5 +117,6 @@ ANSWERS: Mapping[str, tuple[Answer, Any]] = {
         lsp.SemanticTokensLegend(list(outline.TOKEN_TYPES), []),
     ),
     lsp.TEXT_DOCUMENT_INLAY_HINT: (_hints, None),
+    lsp.TEXT_DOCUMENT_CODE_LENS: (_of_file(lenses.lenses), lsp.CodeLensOptions()),
 }
 """Method → its answer, and the options of the server."""

@@ -23,7 +23,7 @@ from pygls.lsp.server import LanguageServer
 
 from compiler.files.build_id import __version__
 from compiler.project.paths import BINDINGS
-from fretc.lsp import outline
+from fretc.lsp import commands, outline
 from fretc.lsp.answers import ANSWERS, Answer, RefusalError
 from fretc.lsp.reports import Reports
 from fretc.lsp.session import OpenProject, Session, requirement_folders
@@ -92,6 +92,14 @@ class Server(LanguageServer):
             self.report_server_error(error, FeatureNotificationError)
         else:
             self._publish()
+            self._refresh_lenses()
+
+    def _refresh_lenses(self) -> None:
+        """Let the client ask again for code lenses, if it can."""
+        workspace = self.client_capabilities.workspace
+        lens = workspace.code_lens if workspace is not None else None
+        if lens is not None and lens.refresh_support:
+            self.workspace_code_lens_refresh(None)
 
     def _after_silence(self) -> None:
         if self._timer is not None:
@@ -208,6 +216,34 @@ def _workspace_symbols(ls: Server, params: lsp.WorkspaceSymbolParams) -> list[ls
     return outline.workspace_symbols([view for view in views if view is not None], params.query)
 
 
+def _initialize(ls: Server, params: lsp.InitializeParams) -> None:
+    """Note what the client can do, and offer the commands of code lenses if it asks for them.
+
+    Other clients have commands of the same names themselves, and could not register them twice.
+    """
+    document = params.capabilities.text_document
+    support = document.code_action.resolve_support if document and document.code_action else None
+    ls.session.resolves_actions = support is not None and "edit" in support.properties
+    options = params.initialization_options
+    if isinstance(options, Mapping) and options.get("commands") is True:
+        for name in commands.COMMANDS:
+            ls.command(name)(_runner(name))
+
+
+def _runner(name: str) -> Callable[..., str | None]:
+    """The handler of a command: the answer in text, which the client also shows as a message."""
+
+    def run(ls: Server, *arguments: Any) -> str | None:
+        id, uri = arguments if len(arguments) == 2 else ("", "")
+        view = ls.view(uri) if isinstance(uri, str) else None
+        text = commands.answer(view, name, str(id)) if view is not None else None
+        if text is not None:
+            ls.window_show_message(lsp.ShowMessageParams(lsp.MessageType.Info, text))
+        return text
+
+    return run
+
+
 def _opened(ls: Server, params: lsp.DidOpenTextDocumentParams) -> None:
     path = path_of(params.text_document.uri)
     if path is not None:
@@ -269,6 +305,7 @@ def _roots(ls: Server) -> list[str]:
 
 
 _NOTIFICATIONS: Mapping[str, Callable[..., None]] = {
+    lsp.INITIALIZE: _initialize,
     lsp.INITIALIZED: _initialized,
     lsp.TEXT_DOCUMENT_DID_OPEN: _opened,
     lsp.TEXT_DOCUMENT_DID_CHANGE: _changed,

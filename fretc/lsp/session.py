@@ -17,12 +17,21 @@ from compiler.files.text_files import read, unsaved_texts
 from compiler.project.folder import load_folder
 from compiler.project.paths import BINDINGS, HAZARDS
 from compiler.project.project import Project
-from fretc.checking.diagnostics import SideFiles, project_diagnostics, quick_diagnostics
+from fretc.audit.evidence.result_summaries import ResultSummaries
+from fretc.checking.diagnostics import (
+    ProjectCheck,
+    SideFiles,
+    check_project,
+    quick_diagnostics,
+)
+from fretc.checking.statuses import RequirementStatus, statuses
+from fretc.logs.storage.log_names import path_of
 from fretc.lsp.names import Occurrence, occurrences
 from fretc.terminal.options import default_evidence
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source
+from fretish.documents import RequirementEntry
 from fretish.reading.limits import ExceededError, exceeded, stoppable
 from fretish.reading.memory import Memory
 
@@ -51,20 +60,31 @@ class OpenProject:
         self._quick, self._slow, self._names = Memory(), Memory(), Memory()
         self._occurrences: list[Occurrence] | None = None
         self._reading: Reading | None = None
-        self._everything: tuple[Diagnostic, ...] | None = None
+        self._check: ProjectCheck | None = None
         self._slow_ones: tuple[Diagnostic, ...] = ()
         """The diagnostics that only `complete` gives, of its last run."""
+        self._statuses: Mapping[RequirementEntry, RequirementStatus] = {}
+        self._latest_log = ""
         self._changed: set[str] = set()
         """The files that have changed since then."""
 
     @property
     def name(self) -> str:
         """The folder as a command in the root would name it."""
-        return os.path.relpath(self.folder, self.root)
+        return self.relative(self.folder)
 
     def path(self, source: Source) -> str:
         """The absolute path of a source."""
         return os.path.normpath(os.path.join(self.root, source.name))
+
+    @property
+    def latest_log(self) -> str:
+        """The name of the latest audited log that lies in the root; "" if there is none."""
+        return self._latest_log if self.is_complete else ""
+
+    def relative(self, path: str) -> str:
+        """A path as a command in the root would name it."""
+        return os.path.relpath(path, self.root)
 
     def forget(self, path: str | None = None) -> None:
         """Read the project again when something asks for it.
@@ -72,7 +92,7 @@ class OpenProject:
         Args:
             path: the file that has changed; None: it is not known.
         """
-        self._reading = self._everything = self._occurrences = None
+        self._reading = self._check = self._occurrences = None
         if path is not None:
             self._changed.add(path)
 
@@ -94,15 +114,20 @@ class OpenProject:
     @property
     def is_complete(self) -> bool:
         """Whether `diagnostics` has all that `fretc check` reports."""
-        return self._everything is not None
+        return self._check is not None
+
+    @property
+    def statuses(self) -> Mapping[RequirementEntry, RequirementStatus]:
+        """The status of each requirement; empty until `complete` has run after the last change."""
+        return self._statuses if self.is_complete else {}
 
     def diagnostics(self, texts: Mapping[str, str]) -> tuple[Diagnostic, ...]:
         """All diagnostics if `complete` has run since the last change.
 
         Otherwise the quick ones, with the slow ones of its last run for files that are unchanged.
         """
-        if self._everything is not None:
-            return self._everything
+        if self._check is not None:
+            return self._check.diagnostics
         kept = (each for each in self._slow_ones if self._is_unchanged(each))
         return tuple(dict.fromkeys((*self.reading(texts).diagnostics, *kept)))
 
@@ -121,27 +146,41 @@ class OpenProject:
             StoppedError: it is not.
         """
         reading = self.reading(texts)
-        self._everything = self._computed(reading, texts, stop)
+        check, statuses = self._computed(reading, texts, stop)
         quick = {*reading.diagnostics}
-        self._slow_ones = tuple(each for each in self._everything if each not in quick)
+        self._slow_ones = tuple(each for each in check.diagnostics if each not in quick)
         self._changed.clear()
+        self._check, self._statuses = check, statuses
+        self._latest_log = self._log_of(check.summaries)
+        self.occurrences(texts)  # so that the first question about a name need not wait for them
 
     def _computed(
         self, reading: Reading, texts: Mapping[str, str], stop: Callable[[], bool]
-    ) -> tuple[Diagnostic, ...]:
+    ) -> tuple[ProjectCheck, Mapping[RequirementEntry, RequirementStatus]]:
         if reading.project is None:
-            return reading.diagnostics
+            return ProjectCheck(reading.diagnostics), {}
         try:
             with self.around(texts), self._slow.active(), stoppable(stop, _SLOWEST):
-                return self._across(reading.project)
+                check = self._across(reading.project)
+                return check, {each.entry: each for each in statuses(check)}
         except ExceededError as error:
-            return (*reading.diagnostics, exceeded(error))
+            return ProjectCheck((*reading.diagnostics, exceeded(error))), {}
 
-    def _across(self, project: Project) -> tuple[Diagnostic, ...]:
+    def _log_of(self, summaries: ResultSummaries | None) -> str:
+        if summaries is None:
+            return ""
+        runs = sorted(summaries.source.runs(), key=lambda run: run.start_ns or 0, reverse=True)
+        for run in runs:
+            path = os.path.realpath(os.path.join(self.root, path_of(run.run)))
+            if _is_below(path, os.path.realpath(self.root)) and os.path.isfile(path):
+                return run.run
+        return ""
+
+    def _across(self, project: Project) -> ProjectCheck:
         evidence = default_evidence()
         if isinstance(evidence, Diagnostic):
-            return (*quick_diagnostics(project), evidence)
-        return project_diagnostics(project, SideFiles(self.name, evidence))
+            return ProjectCheck((*quick_diagnostics(project), evidence))
+        return check_project(project, SideFiles(self.name, evidence))
 
     def occurrences(self, texts: Mapping[str, str]) -> list[Occurrence]:
         """All names of the project and where they are; none if it cannot be read."""
@@ -164,6 +203,8 @@ class Session:
     def __init__(self) -> None:
         self.roots: list[str] = []
         """The workspace folders."""
+        self.resolves_actions = False
+        """Whether the client asks for the edit of an action when the user chooses it."""
         self.texts: dict[str, str] = {}
         """Path → text, without a byte order mark, of each open file."""
         self.projects: dict[str, OpenProject] = {}

@@ -70,6 +70,24 @@ def remembered(function: Callable[P, R]) -> Callable[P, R]:
     return recalled
 
 
+def remembered_by_value(function: Callable[P, R]) -> Callable[P, R]:
+    """The function with the active memory. Its arguments are hashable and positional.
+
+    Arguments that are equal have the same result: it holds nothing that equality ignores, such as
+    the place of a sentence in its file.
+    """
+
+    @functools.wraps(function)
+    def recalled(*args: P.args, **kwargs: P.kwargs) -> R:
+        memory = _active.get()
+        if memory is None:
+            return function(*args, **kwargs)
+        assert not kwargs, "arguments are given by position"
+        return memory.recall((function, *args), None, lambda: function(*args, **kwargs))
+
+    return recalled
+
+
 def same(value: R, *key: Hashable) -> R:
     """The equal value of the reading before, so that what is computed from it is recalled.
 

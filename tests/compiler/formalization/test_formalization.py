@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 
+from compiler.formalization.formalize import formalize
 from compiler.formalization.future import future
 from compiler.formalization.obligation import Obligation, obligation
 from compiler.formalization.past import monitor_spec, past
@@ -22,7 +23,9 @@ from compiler.logic.spot import same_language
 from fretish.clock import Clock, Rounding, in_ticks
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source
+from fretish.documents import RequirementEntry, requirements
 from fretish.parser import parse
+from fretish.reading.memory import Memory
 from fretish.syntax import Sentence, duration
 from tests import fret_notation as fret
 from tests.each import each
@@ -427,3 +430,20 @@ def test_the_chosen_rounding_implies_the_other_one(template: Template) -> None:
     strict, lax = (down, up) if rounded(template) == 2 else (up, down)
     assert implied(strict, lax)
     assert not implied(lax, strict)
+
+
+def test_formulas_recalled_from_a_memory_are_those_computed() -> None:
+    """All sentences share one memory, and move within their file."""
+    memory, count = Memory(), 0
+    texts = [row["fretish"] for row in some(formulas_of_fret(), 8)]
+    for start in ("", "\n\n"):
+        with memory.active():
+            recalled = [formalize(entry, None) for entry in entries(start, texts)]
+        computed = [formalize(entry, None) for entry in entries(start, texts)]
+        assert recalled == computed
+        count += sum(requirement is not None for requirement, _ in recalled)
+    assert count > 20
+
+
+def entries(start: str, texts: Sequence[str]) -> list[RequirementEntry]:
+    return [requirements(Source("r.fret", f"{start}{text}\n"))[0][0] for text in texts]

@@ -1,6 +1,7 @@
 """`fretc check`: what is wrong or missing in a project, before any run."""
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -373,3 +374,73 @@ def test_a_hazard_to_be_named_is_told_of_the_approved_requirement_below_it(good:
     assert "F532 warning: R1 is approved, and the title of its parent HAZ-1 still begins" in run.err
     edited("r1.fret", '"approved"', '"draft"')
     assert "F532" not in good("check").err
+
+
+Steps = Callable[..., None]
+
+
+@pytest.fixture
+def steps(monkeypatch: pytest.MonkeyPatch) -> Steps:
+    """Do something in each pause of `--watch`; then press Ctrl-C."""
+
+    def set_steps(*actions: Callable[[], object]) -> None:
+        waiting = iter(actions)
+
+        def sleep(_: float) -> None:
+            action = next(waiting, None)
+            if action is None:
+                raise KeyboardInterrupt
+            action()
+
+        monkeypatch.setattr("fretc.commands.check.time.sleep", sleep)
+
+    return set_steps
+
+
+SOUND = "1 requirement: 0 errors, 0 warnings"
+
+
+def test_a_watch_checks_again_after_each_change(good: Fretc, steps: Steps) -> None:
+    def nothing() -> None: ...
+
+    steps(
+        nothing,
+        lambda: edited("r1.fret", "shall", "shal"),
+        nothing,
+        lambda: edited("r1.fret", "shal ", "shall "),
+        lambda: Path("requirements/bindings.toml").unlink(),
+    )
+    run = good("check", "--watch")
+    assert run.status == 2, "that of the last check"
+    counts = [line for line in run.err.splitlines() if line.startswith("1 requirement")]
+    assert [counts[0], counts[2]] == [SOUND, SOUND]
+    assert counts[1].startswith("1 requirement: 1 error")
+    assert len(counts) == 4
+    assert run.err.count("waiting for a change of requirements; Ctrl-C ends") == 4
+    assert run.out == ""
+
+
+def test_a_watch_waits_for_a_folder_that_is_missing(good: Fretc, steps: Steps) -> None:
+    folder = Path("requirements")
+    steps(lambda: folder.rename("away"), lambda: Path("away").rename(folder))
+    run = good("check", "--watch")
+    assert (run.status, run.err.count(SOUND), run.err.count("there is no folder")) == (0, 2, 1)
+
+
+@each("path", ("fretc.toml", "build/evidence.json", "requirements/waivers.toml", "other.toml"))
+def test_a_watch_sees_the_files_beside_the_requirements(
+    path: str, good: Fretc, steps: Steps
+) -> None:
+    Path(path).unlink(missing_ok=True)
+    steps(lambda: write(path, "a mistake\n"))
+    write("requirements/same.toml", cases.BINDINGS)
+    run = good("check", "--watch", "--verification", "other.toml")
+    assert run.status == 2
+    assert run.err.count("waiting for a change") == 2
+    Path(path).unlink()
+
+
+def test_a_watch_prints_text_only(good: Fretc) -> None:
+    run = good("check", "--watch", "--format", "json")
+    assert run.status == 2
+    assert run.err.startswith("F907 --watch cannot be combined with --format json")

@@ -1,5 +1,6 @@
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -12,8 +13,8 @@ def editor(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable
     monkeypatch.chdir(tmp_path)
     editors: list[Editor] = []
 
-    def start(encoding: str = "utf-16") -> Editor:
-        editors.append(Editor(tmp_path, encoding))
+    def start(encoding: str = "utf-16", **options: Any) -> Editor:
+        editors.append(Editor(tmp_path, encoding, **options))
         return editors[-1]
 
     yield start

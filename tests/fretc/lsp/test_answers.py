@@ -417,6 +417,59 @@ def test_a_missing_binding_and_a_reason_can_be_added(editor: Start) -> None:
     assert applied(edits, HEADER) == '+++\nid = "R1"\naccept = { F204 = "TODO" }\n+++\n'
 
 
+ENGLISH = "if the battery is low, the drone must return within 5 seconds"
+
+
+def test_a_sentence_in_plain_english_can_become_one_of_its_readings(
+    editor: Start, fretc: Fretc
+) -> None:
+    client, path, _ = opened(editor)
+    client.change(path, f"{HEADER}{ENGLISH}\n")
+    offered = [each for each in actions(client, path) if each["title"].startswith("write `when")]
+    readings = json.loads(fretc("write", ENGLISH, "--format", "json").out)
+    sentences = [reading["sentence"] for each in readings["texts"] for reading in each["readings"]]
+    texts = []
+    for action in offered:
+        (edits,) = action["edit"]["changes"].values()
+        text = applied(edits, f"{HEADER}{ENGLISH}\n")
+        texts.append(text.removeprefix(HEADER).rstrip("\n"))
+        assert action["title"] == f"write `{texts[-1]}`"
+    assert texts == sentences
+    assert len(texts) > 1
+    client.change(path, f"{HEADER}The robot must stop. It must start again.\n")
+    assert not [each for each in actions(client, path) if "the robot shall" in each["title"]]
+    assert client.log == []
+
+
+@pytest.mark.slow
+def test_missing_bindings_are_drafted_from_the_latest_audited_log(
+    editor: Start, fretc: Fretc
+) -> None:
+    shutil.copytree(ROOT / "requirements", "requirements", ignore=shutil.ignore_patterns("*/"))
+    Path("traces").mkdir()
+    log = Path(shutil.copy(ROOT / "traces/mission-seed15.mcap", "traces"))
+    fretc("audit", str(log), "-o", "build/evidence.json")
+    path = Path.cwd() / "requirements/r1.fret"
+    client = editor()
+    sentence = "whenever too_close the robot shall eventually satisfy !moving & battery < 20 %"
+    client.open(path, f"{HEADER}{sentence}\n")
+    client.settle()
+    titles = {each["title"]: each for each in actions(client, path)}
+    (title,) = [each for each in titles if "`moving`" in each and "drafted from" in each]
+    assert title == f"add `moving` to bindings.toml, drafted from {log} (F304)"
+    resolved = client.ask("codeAction/resolve", **titles[title])
+    (edits,) = resolved["edit"]["changes"].values()
+    before = Path("requirements/bindings.toml").read_text()
+    after = applied(edits, before)
+    assert after.startswith(before)
+    assert "[proposition.moving]" in after
+    other = {**titles[title], "data": {**titles[title]["data"], "log": "/etc/passwd"}}
+    assert "edit" not in client.ask("codeAction/resolve", **other)
+    log.write_bytes(b"not a log")
+    with pytest.raises(RefusedError, match="F4"):
+        client.ask("codeAction/resolve", **titles[title])
+
+
 # Outline ------------------------------------------------------------------------------------------
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from fretish.reading.memory import Memory, remembered, same
+from fretish.reading.memory import Memory, remembered, remembered_by_value, same
 
 calls: list[object] = []
 
@@ -69,3 +69,19 @@ def test_an_equal_value_is_the_object_of_the_reading_before() -> None:
         assert same(second, "a", 1) is first
         assert same(second, "a", 2) is second
     assert same(second, "a", 1) is second
+
+
+@remembered_by_value
+def length(value: str) -> int:
+    calls.append(value)
+    return len(value)
+
+
+def test_equal_arguments_have_one_result_by_value() -> None:
+    memory = Memory()
+    with memory.active():
+        length("ab")
+    with memory.active():
+        assert (length("".join(("a", "b"))), length("abc")) == (2, 3)
+    assert calls == ["ab", "abc"]
+    assert (length("ab"), len(calls)) == (2, 3)
