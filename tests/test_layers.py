@@ -74,6 +74,7 @@ DOORS = {
     "buddy": {"compiler/logic/diagrams/buddy_engine.py", "compiler/logic/spot.py"},
     "oxidd": {"compiler/logic/diagrams/oxidd_engine.py"},
     "jinja2": {"compiler/files/template_engine.py", "compiler/files/templating.py"},
+    "pygments": {"fretc/pygments_lexer.py"},
     "securesystemslib": {"fretc/attestation/keys.py"},
     "cryptography": {"fretc/attestation/keys.py"},
     "cyclonedx": {"fretc/attestation/sbom.py"},

@@ -1,0 +1,2 @@
+export { parser } from "./parser.js";
+export { highlighting } from "./highlight.js";
