@@ -44,7 +44,10 @@ class Perception:
     def __init__(self, setting: BindingConfig) -> None:
         """Start before the first message."""
         self._setting = setting
-        self._series = {each.name: Series(each.max_age) for each in setting.policies}
+        self._series: dict[str, Series] = {
+            each.name: each.series() if each.series else Series(each.max_age)
+            for each in setting.policies
+        }
         self._topic = {each.name: each.topic for each in setting.policies}
         self._ticking = Ticking(setting.topics, setting.period, setting.phase)
         self._evaluators: dict[str, PropositionEvaluator] = {}

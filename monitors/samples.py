@@ -37,6 +37,8 @@ class Policy(NamedTuple):
     """The readings of a whole array of floats. Arguments: the array, a function for invalid
     elements, and the fields `beside`, none of which may be unknown."""
     beside: "tuple[str, ...]" = ()
+    series: "Callable[[], Any] | None" = None
+    """Makes the series of a signal with memory; None: its samples are its values."""
     max_age: "int | None" = None
     words: "tuple[str, ...]" = ()
     """The words of an enumerated signal; a sample is the index of its word."""

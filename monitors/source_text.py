@@ -30,6 +30,8 @@ _LIVE = (
 """The modules that a live node needs in addition to its monitor."""
 _FUNCTIONS = ("rounded_functions",)
 """The modules of the functions of computed signals."""
+_MEMORY = ("memory",)
+"""The modules of signals with memory."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,13 +62,15 @@ def interceptor() -> Runtime:
 
 
 @cache
-def perception(*, rounds: bool = False) -> Runtime:
+def perception(*, rounds: bool = False, remembers: bool = False) -> Runtime:
     """The modules that a live node needs in addition to its monitor.
 
     Args:
         rounds: whether it calls the functions of computed signals.
+        remembers: whether it has signals with memory.
     """
-    return _joined(_ROOM, (*_LIVE, *_FUNCTIONS) if rounds else _LIVE)
+    modules = (*_LIVE, *(_FUNCTIONS if rounds else ()), *(_MEMORY if remembers else ()))
+    return _joined(_ROOM, modules)
 
 
 def _joined(folder: Path, modules: Sequence[str]) -> Runtime:

@@ -206,6 +206,8 @@ def _computed(signal: ComputedSignal, name: str) -> SignalFunction:
 
 def _text(policy: SamplePolicy) -> str:
     signal = policy.signal
+    if signal.memory is not None:
+        return f"The number of {signal.name} is computed by the caller: {signal.memory.text}."
     if policy.is_given:
         return f"The number of {signal.name} is computed by the caller: {signal.reduce}."
     if signal.values:

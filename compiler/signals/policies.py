@@ -55,8 +55,11 @@ class SamplePolicy:
 
     @property
     def is_given(self) -> bool:
-        """Whether the caller computes the number: a mean in the field's unit, or a clearance."""
-        return self.signal.reduce in (Reduce.MEAN, Reduce.OUTLINE)
+        """Whether the caller computes the number.
+
+        It is a mean in the field's unit, a clearance, or the value of a signal with memory.
+        """
+        return self.signal.memory is not None or self.signal.reduce in (Reduce.MEAN, Reduce.OUTLINE)
 
     @property
     def is_array(self) -> bool:
@@ -150,7 +153,7 @@ def policy(signal: Signal) -> SamplePolicy:
     if signal.valid is None:
         return SamplePolicy(signal)
     fields = dict.fromkeys(name.id for name in e.names(signal.valid) if name.id != "x")
-    return SamplePolicy(signal, Lowering(unit=signal.unit).truth(signal.valid), tuple(fields))
+    return SamplePolicy(signal, Lowering(unit=signal.field_unit).truth(signal.valid), tuple(fields))
 
 
 def meaning(

@@ -23,6 +23,7 @@ from fretc.logs.mcap.metadata import Described, of_record, together
 from fretc.logs.messages.decoding import decoder, leaves
 from fretc.logs.messages.leaves import Leaves, numbers
 from fretc.logs.signals.integrity import Checked, Integrity
+from fretc.logs.signals.memory import with_memory
 from fretc.logs.signals.samples import Gap, Recording, Samples
 from fretc.logs.storage import storage_diagnostics
 from fretc.logs.storage.bags import NOWHERE
@@ -381,12 +382,18 @@ def _recording(
     watch = watched(columns, run.described, place)
     missed = [columns.on_clock(span) for span in watch.missed]
     gaps = tuple(sorted({*gaps, *missed}))
+    last = max([end, *(gap[1] for gap in gaps), watch.until])
+    by_name = {signal.name: signal for signal in (*wanted, *beside)}
+    samples, others = (
+        {name: with_memory(by_name[name], each, gaps, last) for name, each in some.items()}
+        for some in (samples, others)
+    )
     return Recording(
         name=place.source.name,
         sha256=run.sha256,
         size=run.size,
         start_ns=min([start, *(gap[0] for gap in gaps)]),
-        end_ns=max([end, *(gap[1] for gap in gaps), watch.until]),
+        end_ns=last,
         samples=samples,
         ticks=columns.ticks(),
         gaps=gaps,

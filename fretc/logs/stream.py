@@ -134,7 +134,12 @@ class SampleStream:
         message = value
         for part in reversed(signal.path.fields):
             message = {part: message}
-        return self._take(signal.path.topic, time, message, (signal,))
+        of_sample = [
+            each
+            for each in self._declarations.signals.values()
+            if each is signal or (each.memory is not None and each.memory.source == name)
+        ]
+        return self._take(signal.path.topic, time, message, of_sample)
 
     def message(self, topic: str, time: int, message: object) -> Diagnostic | None:
         """Add one message: a sample of each signal of the topic, and a tick of its clock."""

@@ -97,6 +97,9 @@ def signal_fields(signal: Signal) -> dict[str, Any]:
         "max_age": signal.max_age,
         "outline": [signal.footprint, signal.sensor] if outline else None,
     }
+    if signal.memory is not None:
+        memory = signal.memory
+        meaning |= {"memory": [memory.function, memory.over, memory.max_age]}
     return meaning | {"values": _values(signal)} if signal.values else meaning
 
 

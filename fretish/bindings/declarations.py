@@ -114,6 +114,24 @@ class Aggregate(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
+class Memory:
+    """A function of the past of a recorded signal; `monitors/memory.py` defines its values."""
+
+    function: str
+    """A name of `fretish.bindings.functions.MEMORY`."""
+    source: str
+    """The name of the signal."""
+    over: int | None
+    """The length of the window in nanoseconds; None: only `rate` has none."""
+    max_age: int | None
+    """The `max_age` of the signal."""
+    unit: Unit
+    """The unit of the signal, in which `valid` is read."""
+    text: str = ""
+    """As written."""
+
+
+@dataclass(frozen=True, slots=True)
 class Signal:
     """A number or a word over time, read from one field of one topic.
 
@@ -123,7 +141,8 @@ class Signal:
     `sensor` (pose of the sensor: x, y in metres, yaw in radians) are in the robot's frame, and only
     for `Reduce.OUTLINE`. `max_age` is in nanoseconds; None: a sample counts until the next one.
     `role` is None if it is not declared. `aggregate` applies to comparisons in sentences; a
-    proposition has its own.
+    proposition has its own. With `memory`, the samples are values over earlier samples of the
+    field; all other fields but unit, role and `aggregate` are those of the signal that it reads.
     """
 
     name: str
@@ -141,12 +160,18 @@ class Signal:
     sensor: tuple[float, float, float] = (0.0, 0.0, 0.0)
     values: tuple[str, ...] = ()
     numbers: tuple[int, ...] = ()
+    memory: Memory | None = None
     span: Span | None = field(default=None, compare=False, repr=False)
 
     @property
     def scale(self) -> Fraction:
         """Factor from the field's unit to base units; a clearance is in base units already."""
         return Fraction(1) if self.reduce is Reduce.OUTLINE else self.unit.factor
+
+    @property
+    def field_unit(self) -> Unit:
+        """The unit of the field; that of the samples, except with `memory`."""
+        return self.unit if self.memory is None else self.memory.unit
 
 
 @dataclass(frozen=True, slots=True)

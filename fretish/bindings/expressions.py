@@ -14,7 +14,7 @@ from functools import cache
 from typing import Any, cast
 
 from fretish import expressions as e
-from fretish.bindings.functions import OF_VALUES, Function
+from fretish.bindings.functions import MEMORY, OF_VALUES, Function
 from fretish.diagnostics.diagnostic import Code, Diagnostic, DiagnosticError, did_you_mean
 from fretish.diagnostics.messages import diagnostic
 from fretish.diagnostics.source import Span
@@ -427,9 +427,8 @@ def _ambiguous(name: str, part: str, span: Span) -> Diagnostic:
 
 
 def _unknown_function(name: str, span: Span) -> Diagnostic:
-    return diagnostic(
-        "unknown_function", span, name=name, functions=", ".join((*FUNCTIONS, *OF_VALUES))
-    )
+    known = dict.fromkeys((*FUNCTIONS, *OF_VALUES, *MEMORY))
+    return diagnostic("unknown_function", span, name=name, functions=", ".join(known))
 
 
 def _unexpected(part: Span, text: Span) -> Diagnostic:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from fretish import expressions as e
 from fretish.classes.frozen import dataclass
 from fretish.units import DIMENSIONLESS, METRE, Dimension, unit
 
@@ -74,6 +75,32 @@ ROUNDED: Mapping[str, Function] = {
     "haversine": _function("haversine(lat1, lon1, lat2, lon2)", ANGLE, METRE.dimension),
 }
 """Functions whose result is a 64-bit float in base units; so are their arguments."""
+MEMORY: Mapping[str, str] = {
+    "rate": "rate(x)",
+    "mean": "mean(x, over = 500 ms)",
+    "max": "max(x, over = 500 ms)",
+    "min": "min(x, over = 500 ms)",
+    "count": "count(x, over = 500 ms)",
+}
+"""The functions with memory, each with a call."""
+OVER = "over"
+"""The name of the argument with the length of a window."""
 CLAMP = "clamp"
 OF_VALUES: Mapping[str, Function] = {CLAMP: _function("clamp(x, least, most)"), **ROUNDED}
 """All functions that only the `value` of a computed signal can call."""
+
+
+def has_memory(part: e.Expression) -> bool:
+    """Whether the part is a call of a function with memory: `max` is one only with `over`."""
+    if not isinstance(part, e.Call) or part.name not in MEMORY:
+        return False
+    return part.name not in ("min", "max") or any(window(arg) is not None for arg in part.args)
+
+
+def window(arg: e.Expression) -> e.Expression | None:
+    """The value of the argument `over = 500 ms`; None: it is another argument."""
+    match arg:
+        case e.Comparison("=", e.Name(id), value) if id == OVER:
+            return value
+        case _:
+            return None

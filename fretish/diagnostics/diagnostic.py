@@ -87,6 +87,7 @@ class Code(Enum):
 
     BAD_PHASE = ("F337", "the phase of the clock is not within a tick")
     BAD_LATENESS = ("F355", "the lateness of the clock is not a duration of at most a minute")
+    BAD_MEMORY = ("F356", "a signal with memory is not defined correctly")
     PLAIN_PERCENT = ("F338", "a plain number is compared with a signal in percent")
     WHICH_UNIT = ("F350", "the unit of a bare number is ambiguous")
     UNIT_IN_SENTENCE = ("F352", "a number in a sentence has a unit, which FRET cannot read")

@@ -62,6 +62,8 @@ def _reasons(requirement: FormalizedRequirement, form: Sif) -> Iterator[tuple[st
 
 def _of_signal(signal: Signal, declared: Declarations) -> Iterator[tuple[str, str]]:
     kind, topic = short_type(signal.type or ""), signal.path.topic
+    if signal.memory is not None:
+        yield f"`{signal.name}`, which has memory", "publish the value as a field, and bind it"
     if signal.reduce is Reduce.MEAN:
         yield f"`{signal.name}`, a mean", "reduce it by `min` or `max`"
     if ROS_TYPE.fullmatch(kind) is None:

@@ -93,7 +93,10 @@ def text(requirements: Sequence[FormalizedRequirement]) -> str:
         requirements: requirements of one project that were not refused.
     """
     table = setting(requirements)
-    joined = runtime(rounds=any("rounded(" in meaning for meaning in table.meanings))
+    joined = runtime(
+        rounds=any("rounded(" in meaning for meaning in table.meanings),
+        remembers=any("MemorySeries(" in policy for policy in table.policies),
+    )
     return render(
         "ros/perception.py.j2",
         version=__version__,
@@ -161,6 +164,9 @@ def _policy(policy: SamplePolicy) -> str:
     texts = {name: repr(part) for name, part in parts.items() if part not in (None, False, (), "")}
     if policy.valid is not None:
         texts["valid"] = f"lambda row: {_truth(policy.valid)}"
+    if signal.memory is not None:
+        memory = (signal.memory.function, signal.memory.over, signal.memory.max_age)
+        texts["series"] = f"lambda: MemorySeries(Memory{memory!r})"
     measured = _measured(policy)
     if measured is not None:
         names = "".join(f", {name}" for name in _besides(policy).values())

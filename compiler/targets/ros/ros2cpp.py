@@ -55,7 +55,18 @@ def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
 def _of_computed(requirement: FormalizedRequirement) -> Diagnostic | None:
     """F601 for computed signals whose last digits would differ from those of an audit."""
     at_instant = instant([requirement], gives_rounded=True)
-    if at_instant is None or not at_instant.given:
+    if at_instant is None:
+        return None
+    remembering = [each.signal for each in at_instant.policies if each.signal.memory is not None]
+    if remembering:
+        return diagnostic(
+            "not_judged_live",
+            remembering[0].span or requirement.entry.wording,
+            requirement=requirement.id,
+            what=f"`{remembering[0].name}` has memory, which the node in C++ lacks",
+            help="emit `ros2-package`, whose node is in Python, or publish the value as a field",
+        )
+    if not at_instant.given:
         return None
     signal = at_instant.given[0]
     return diagnostic(

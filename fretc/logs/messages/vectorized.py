@@ -176,7 +176,7 @@ def limits_of(
     bounds = [] if signal.valid is None else _bounds(signal.valid)
     if bounds is None:
         return None
-    scope = NameValues(count, sibling_values, signal.unit)
+    scope = NameValues(count, sibling_values, signal.field_unit)
     field = Measure(np.zeros(1, np.float32))
     compared: list[tuple[str, Singles]] = []
     for op, side in bounds:
@@ -237,7 +237,7 @@ def _valid(signal: Signal, values: Values, sibling_values: Mapping[str, Numbers]
     count, width = values.shape
     names = {name.id for name in e.names(signal.valid)} - {"x"}
     numbers = {name: _spread(sibling_values[name], width) for name in names}
-    scope = NameValues(count * width, {"x": values.reshape(-1), **numbers}, signal.unit)
+    scope = NameValues(count * width, {"x": values.reshape(-1), **numbers}, signal.field_unit)
     accepted: Truths = (truth(signal.valid, scope) == TRUE).reshape(count, width)
     return finite & accepted
 

@@ -133,7 +133,7 @@ def nearest(signal: Signal, message: object) -> float | None:
         `range_min` in metres, for a signal that is the nearest of many readings; None for
         others, and where the message does not state it.
     """
-    if signal.reduce not in (Reduce.MIN, Reduce.OUTLINE):
+    if signal.memory is not None or signal.reduce not in (Reduce.MIN, Reduce.OUTLINE):
         return None
     range_min = optional_field(message, RANGE_MIN)
     if not isinstance(range_min, Real) or not np.isfinite(float(range_min)):
@@ -264,7 +264,7 @@ def _valid(signal: Signal, message: object, values: Values) -> NDArray[np.bool_]
         return finite
     names = {name.id for name in e.names(signal.valid)} - {"x"}
     siblings = {name: np.array([_sibling(message, name)]) for name in names}
-    scope = NameValues(len(values), {"x": values, **siblings}, signal.unit)
+    scope = NameValues(len(values), {"x": values, **siblings}, signal.field_unit)
     try:
         accepted: NDArray[np.bool_] = truth(signal.valid, scope) == TRUE
     except ExpressionError as error:

@@ -31,7 +31,7 @@ def window_recording(
         size=0,
         start_ns=start,
         end_ns=end,
-        samples={name: queue.samples() for name, queue in queues.items()},
+        samples={name: queue.samples(gaps, end) for name, queue in queues.items()},
         ticks=np.zeros(0, np.int64),
         gaps=tuple(gaps),
         topics={},

@@ -152,7 +152,7 @@ _DOUBLE = 8
 
 
 def _number_type(queue: SampleQueue) -> NumberType:
-    kind = np.dtype(np.float32) if queue.kind is None else queue.kind
+    kind = np.dtype(np.float32) if queue.value_kind is None else queue.value_kind
     return NumberType(kind, queue.signal.scale, queue.signal.values)
 
 
@@ -197,6 +197,8 @@ class _WindowValues:
 def _one(queue: SampleQueue, lost: int, start: int, end: int) -> _Values:
     """The values of one signal: at the start, at its samples, and where one is too old."""
     times, values, max_age = queue.times, queue.values, queue.signal.max_age
+    if queue.remembered is not None:
+        times, values = queue.window(start, end, lost)
     first = bisect_right(times, start)
     stop = bisect_right(times, end, first)
     current = values[first - 1] if first and times[first - 1] > lost else _NAN

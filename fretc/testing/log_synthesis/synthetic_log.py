@@ -73,6 +73,11 @@ def synthesize(test: Test, declarations: Declarations, monitor: Monitor) -> Synt
     parts = [part(declarations.propositions[n], clock.period) for n in monitor.PROPOSITIONS]
     names = dict.fromkeys(name for one in parts for name in one.proposition.signals)
     signals = [declarations.signals[name] for name in names]
+    remembering = next((signal for signal in signals if signal.memory is not None), None)
+    if remembering is not None:
+        raise NotRecordableError(
+            f"`{remembering.name}` has memory: several messages make its value"
+        )
     stage = _SignalSearch(parts, signals, {signal.name: field(signal) for signal in signals})
     plan = tick_plan(test, parts, monitor)
     contents = stage.contents(test, plan)

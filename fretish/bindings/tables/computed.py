@@ -17,7 +17,7 @@ from fretish.bindings.calculations import (
 )
 from fretish.bindings.declarations import Aggregate, ComputedSignal, MeasuredSignal, Role, Signal
 from fretish.bindings.definitions import cycle_from
-from fretish.bindings.functions import ROUNDED
+from fretish.bindings.functions import MEMORY, ROUNDED, has_memory
 from fretish.bindings.tables.fields import Fields, Notes
 from fretish.bindings.tables.signals import FIELDS as SIGNAL_FIELDS
 from fretish.bindings.words import resolve_number
@@ -51,12 +51,15 @@ class ComputedTables(Fields):
         """The signals that were read without errors."""
 
     def _expressions(self) -> Iterator[tuple[str, e.Expression]]:
-        """The values that can be parsed; the others get their errors when they are read."""
+        """The values that can be parsed, but those with memory, which `MemoryTables` reads.
+
+        The others get their errors when they are read.
+        """
         for name, table in self._tables("signal").items():
             text = table.get("value")
             if isinstance(text, str):
                 parsed = binding.parse(self._inside(("signal", name, "value"), text))
-                if not isinstance(parsed, Diagnostic):
+                if not isinstance(parsed, Diagnostic) and not has_memory(parsed):
                     yield name, parsed
 
     def ordered(self, tables: Mapping[str, Mapping[str, Any]]) -> dict[str, Mapping[str, Any]]:
@@ -181,6 +184,10 @@ class ComputedTables(Fields):
             isinstance(part, e.Persistence) for part in e.parts(written)
         ):
             return diagnostic("value_with_memory", span)
+        inner = next((part for part in e.parts(written) if has_memory(part)), None)
+        if isinstance(inner, e.Call):
+            form = MEMORY[inner.name]
+            return diagnostic("memory_within", inner.span or span, name=inner.name, form=form)
         if not any(e.names(written)):
             return diagnostic("value_without_signal", span)
         resolved = resolve_number(written, self._measured, span)

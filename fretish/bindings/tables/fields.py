@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 from fretish import expressions as e
 from fretish.bindings import expressions as binding
 from fretish.bindings.declarations import Default, Modality, Part
-from fretish.bindings.functions import OF_VALUES
+from fretish.bindings.functions import MEMORY, OF_VALUES, has_memory
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.messages import diagnostic
@@ -118,8 +118,8 @@ class Fields:
     def _calls_function_of_values(self, expression: e.Expression, place: Span) -> bool:
         """Whether an expression that is no value of a signal calls such a function: F308."""
         for part in e.parts(expression):
-            if isinstance(part, e.Call) and part.name in OF_VALUES:
-                form = OF_VALUES[part.name].form
+            if isinstance(part, e.Call) and (has_memory(part) or part.name in OF_VALUES):
+                form = MEMORY[part.name] if has_memory(part) else OF_VALUES[part.name].form
                 span = part.span or place
                 self._say(diagnostic("function_of_values", span, name=part.name, form=form))
                 return True

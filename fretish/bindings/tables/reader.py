@@ -20,6 +20,7 @@ from fretish.bindings.tables.coordinates import MapTable
 from fretish.bindings.tables.fields import Fields, Notes
 from fretish.bindings.tables.interceptor import InterceptorTables
 from fretish.bindings.tables.labels import LabelTable
+from fretish.bindings.tables.memory import MemoryTables
 from fretish.bindings.tables.propositions import PropositionTables
 from fretish.bindings.tables.signals import SignalTables
 from fretish.bindings.tables.variables import VariableTables
@@ -77,9 +78,16 @@ class _TablesReader(Fields):
         of_signals = SignalTables(tables, notes)
         recorded = {name: table for name, table in written.items() if "value" not in table}
         signals = self._parts("signal", of_signals.signal, recorded)
+        of_memory = MemoryTables(tables, notes, of_signals.known)
+        remembering = of_memory.tables_with_memory()
+        signals |= self._parts("signal", of_memory.signal, remembering)
         of_computed = ComputedTables(tables, notes, of_signals.known)
         ordered = of_computed.ordered(
-            {name: table for name, table in written.items() if "value" in table}
+            {
+                name: table
+                for name, table in written.items()
+                if "value" in table and name not in remembering
+            }
         )
         computed = self._parts("signal", of_computed.signal, ordered)
         of_propositions = PropositionTables(tables, notes, of_signals.known, of_computed.known)

@@ -37,9 +37,12 @@ value = "hypot(x, y)"
 unit = "mm"
 [signal.height]
 value = "clamp(2 * y, 0 m, 9 m)"
+[signal.fast]
+value = "rate(y, over = 500 ms)"
 """
 FAR = "the sw shall always satisfy distance > 5000"
 HIGH = "the sw shall always satisfy height > 5"
+FAST = "the sw shall always satisfy fast > 5"
 BOTH = "the sw shall always satisfy distance > 5000 | height > 5 | y > 7"
 FILES = {
     "c": "r1_signals.h",
@@ -128,6 +131,35 @@ def test_a_node_in_cpp_refuses_a_function_whose_last_digits_differ() -> None:
     assert ros2cpp.refuse(subject(HIGH)) is None
 
 
+@pytest.mark.parametrize("target", FILES)
+def test_the_caller_gives_the_number_of_a_signal_with_memory(target: str) -> None:
+    text = " ".join(files(target, FAST)[FILES[target]].split())
+    assert "The number of fast is computed by the caller: rate(y, over = 500 ms)." in text
+    assert "sample_fast" not in text
+
+
+def test_a_node_in_cpp_refuses_a_signal_with_memory() -> None:
+    refusal = ros2cpp.refuse(subject(FAST))
+    assert refusal is not None
+    assert "`fast` has memory, which the node in C++ lacks" in refusal.message
+
+
+def test_a_node_in_python_has_the_memory_that_a_watch_has() -> None:
+    source = ROOT.joinpath("monitors/memory.py").read_text()
+    body = source[source.index("class Memory(NamedTuple)") :].strip()
+    text = perception.text([subject(FAST)])
+    assert body in text
+    assert "class Memory" not in perception.text([subject(FAR)])
+    module = executed(text, "perception")
+    (policy,) = module.SETTING.policies
+    series = policy.series()
+    for time, value in ((0, 1.0), (5 * 10**8, 3.0)):
+        series.put(time, value)
+    assert [series.at(i, time) for i, time in enumerate(series.times[:2])] == [None, None]
+    series.put(10**9, 2.0)
+    assert series.memory.max_age == 3 * 10**8  # too old between its samples
+
+
 def test_a_node_in_python_has_the_functions_that_an_audit_calls() -> None:
     source = ROOT.joinpath("monitors/rounded_functions.py").read_text()
     body = source[source.index("_EARTH = ") :].strip()
@@ -151,6 +183,8 @@ expr = "x > 1 m"
 expr = "distance < 5 m"
 [proposition.high]
 expr = "height > 5 m"
+[proposition.quick]
+expr = "fast > 5 m/s"
 """
 )
 
@@ -162,3 +196,11 @@ def test_an_agent_refuses_a_function_whose_last_digits_differ() -> None:
     assert refusal is not None
     assert refusal.code.number == "F601"
     assert "a function of a computed signal in the percept `near`" in refusal.message
+
+
+def test_an_agent_refuses_a_signal_with_memory() -> None:
+    sentence = "whenever quick the sw shall eventually satisfy stopped"
+    refusal = runtime.refusal(bound_requirement(sentence, BINDINGS + AGENT))
+    assert refusal is not None
+    assert refusal.code.number == "F601"
+    assert "`fast`, which has memory" in refusal.message

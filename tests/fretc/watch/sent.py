@@ -36,6 +36,18 @@ path = "/x.other"
 value = "hypot(x, y)"
 [signal.w]
 value = "clamp(x + v, 0, 11) + 0 * sqrt(x - 5)"
+[signal.changing]
+value = "rate(x)"
+[signal.trend]
+value = "rate(x, over = 12 ms)"
+[signal.middle]
+value = "mean(x, over = 25 ms)"
+[signal.highest]
+value = "max(x, over = 13 ms)"
+[signal.lowest]
+value = "min(x, over = 40 ms)"
+[signal.ones]
+value = "count(x, over = 30 ms)"
 [proposition.near]
 expr = "x < 5"
 agg = "{aggregate}"
@@ -45,6 +57,11 @@ expr = "(y < 5 for 12 ms) or (x < 5 and not (z < 5))"
 [proposition.slow]
 expr = "{slow}"
 """
+MEMORIES = (
+    *("changing < 100 Hz", "trend < 100 Hz or trend > -1 Hz", "middle < 5 for 12 ms"),
+    *("highest < 5 and y < 5", "lowest < 5 for 9 ms", "ones > 1", "ones < 2 or highest < 9"),
+)
+"""Conditions on signals with memory."""
 
 
 @dataclass(frozen=True)
@@ -79,6 +96,7 @@ settings_ = st.builds(
         [
             *("y - pre(9, y) < 5", "y < 5 and x < 9", "z < 5 for 25 ms"),
             *("v < 9.1 for 12 ms", "w < 11 or v > 10", "v - pre(9, v) < 2"),
+            *MEMORIES,
         ]
     ),
     lateness=st.sampled_from([0, 5, 20]),

@@ -18,7 +18,7 @@ from fretc.watch.session import EndedRun, Jump, Session
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from monitors.kernel.verdicts import Truth
 from tests.effort import examples
-from tests.fretc.watch.sent import MS, START, Sent, Setting, plan_of, settings_
+from tests.fretc.watch.sent import MEMORIES, MS, START, Sent, Setting, plan_of, settings_
 
 messages = st.lists(
     st.builds(
@@ -141,7 +141,8 @@ def test_what_was_missed_satisfies_nothing_live_and_audited(
 @examples(6)
 def test_nothing_is_judged_while_the_source_is_gone(some: list[Sent], data: st.DataObject) -> None:
     """By arrival both know when it was, so the audit says the same; some messages still came."""
-    setting = Setting(time="log_time", slow="y < 5")
+    slow = data.draw(st.sampled_from(["y < 5", *MEMORIES]))
+    setting = Setting(time="log_time", slow=slow)
     if not bound(some, setting):
         return
     plan = plan_of(setting)

@@ -17,6 +17,7 @@ from fretish.bindings.declarations import (
     REP_117,
     Aggregate,
     Declarations,
+    Memory,
     Modality,
     Path,
     Reduce,
@@ -64,6 +65,7 @@ SIGNAL: dict[str, Any] = {
     "invalid": REP_117,
     "max_age": 5,
     "values": ("a", "b"),
+    "memory": Memory("max", "x", 5, None, units.ONE),
 }
 PROPOSITION: dict[str, Any] = {
     "expression": read("x > 2 m"),

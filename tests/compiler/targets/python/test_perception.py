@@ -30,7 +30,7 @@ from fretish.documents import RequirementEntry
 from monitors.loading import executed
 from tests.effort import examples
 from tests.fretc.logs.logs import declare
-from tests.fretc.watch.sent import MS, SENTENCES, START, Sent, Setting, plan_of
+from tests.fretc.watch.sent import MEMORIES, MS, SENTENCES, START, Sent, Setting, plan_of
 from tests.fretc.watch.test_session import audited_rows, recorded
 from tests.signal_policies import KINDS, SIGNS, Message, audited_sample, doubles, signals
 
@@ -45,6 +45,7 @@ settings_ = st.builds(
         [
             *("y < 5 and x < 9", "z < 5 for 25 ms", "((x < 5 for 12 ms) or y < 5) for 9 ms"),
             *("v < 9.1 for 12 ms", "w < 11 or v > 10"),
+            *MEMORIES,
         ]
     ),
     lateness=st.sampled_from([0, 5, 20]),
