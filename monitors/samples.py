@@ -46,6 +46,8 @@ class Policy(NamedTuple):
     """The factor from the field's unit to metres, for `outline`."""
     footprint: "tuple[tuple[float, float], ...]" = ()
     sensor: "tuple[float, float, float]" = (0.0, 0.0, 0.0)
+    is_pose: bool = False
+    """Whether it is read from transforms, not from a field: `BindingConfig.frames` has them."""
 
 
 def field(message: Any, path: "Iterable[str]") -> Any:

@@ -30,6 +30,8 @@ _LIVE = (
 """The modules that a live node needs in addition to its monitor."""
 _FUNCTIONS = ("rounded_functions",)
 """The modules of the functions of computed signals."""
+_FRAMES = ("transforms",)
+"""The modules of signals of frames."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,13 +62,14 @@ def interceptor() -> Runtime:
 
 
 @cache
-def perception(*, rounds: bool = False) -> Runtime:
+def perception(*, rounds: bool = False, frames: bool = False) -> Runtime:
     """The modules that a live node needs in addition to its monitor.
 
     Args:
         rounds: whether it calls the functions of computed signals.
+        frames: whether it has signals of frames.
     """
-    return _joined(_ROOM, (*_LIVE, *_FUNCTIONS) if rounds else _LIVE)
+    return _joined(_ROOM, (*_LIVE, *(_FUNCTIONS if rounds else ()), *(_FRAMES if frames else ())))
 
 
 def _joined(folder: Path, modules: Sequence[str]) -> Runtime:

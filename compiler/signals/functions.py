@@ -172,7 +172,7 @@ def _signal(policy: SamplePolicy, name: str, language: NumberSyntax) -> SignalFu
     unit = f", {signal.unit_name}" if signal.unit_name else ""
     return SignalFunction(
         name,
-        f"{signal.path}{unit}",
+        str(signal.pose) if signal.pose is not None else f"{signal.path}{unit}",
         _text(policy),
         "given" if policy.is_given else form,
         signal.reduce,
@@ -206,6 +206,9 @@ def _computed(signal: ComputedSignal, name: str) -> SignalFunction:
 
 def _text(policy: SamplePolicy) -> str:
     signal = policy.signal
+    if signal.pose is not None:
+        unit = "radians" if signal.pose.number.is_angle else "metres"
+        return f"The number of {signal.name} is computed by the caller: {signal.pose}, in {unit}."
     if policy.is_given:
         return f"The number of {signal.name} is computed by the caller: {signal.reduce}."
     if signal.values:

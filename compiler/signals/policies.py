@@ -55,8 +55,12 @@ class SamplePolicy:
 
     @property
     def is_given(self) -> bool:
-        """Whether the caller computes the number: a mean in the field's unit, or a clearance."""
-        return self.signal.reduce in (Reduce.MEAN, Reduce.OUTLINE)
+        """Whether the caller computes the number: a mean in the field's unit, a clearance, a pose.
+
+        A number of a pose is in base units.
+        """
+        signal = self.signal
+        return signal.reduce in (Reduce.MEAN, Reduce.OUTLINE) or signal.pose is not None
 
     @property
     def is_array(self) -> bool:

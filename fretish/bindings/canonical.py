@@ -97,6 +97,8 @@ def signal_fields(signal: Signal) -> dict[str, Any]:
         "max_age": signal.max_age,
         "outline": [signal.footprint, signal.sensor] if outline else None,
     }
+    if signal.pose is not None:
+        meaning["pose"] = [signal.pose.frame, signal.pose.reference, str(signal.pose.number)]
     return meaning | {"values": _values(signal)} if signal.values else meaning
 
 

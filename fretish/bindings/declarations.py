@@ -96,6 +96,37 @@ def path(text: str) -> Path | None:
     )
 
 
+class PoseNumber(StrEnum):
+    """A number of the pose of one frame in another."""
+
+    X = "x"
+    Y = "y"
+    Z = "z"
+    DISTANCE = "distance"
+    """Between the origins of the two frames."""
+    YAW = "yaw"
+    PITCH = "pitch"
+    ROLL = "roll"
+
+    @property
+    def is_angle(self) -> bool:
+        """Whether it is an angle; the others are lengths."""
+        return self in (PoseNumber.YAW, PoseNumber.PITCH, PoseNumber.ROLL)
+
+
+@dataclass(frozen=True, slots=True)
+class FramePose:
+    """A number of the pose of `frame` in `reference`, from the transforms that tf2 reads."""
+
+    frame: str
+    reference: str
+    number: PoseNumber
+
+    def __str__(self) -> str:
+        """The number in words: `x of base_link in map`."""
+        return f"{self.number} of {self.frame} in {self.reference}"
+
+
 class Role(StrEnum):
     """FRET's types of variable."""
 
@@ -141,12 +172,15 @@ class Signal:
     sensor: tuple[float, float, float] = (0.0, 0.0, 0.0)
     values: tuple[str, ...] = ()
     numbers: tuple[int, ...] = ()
+    pose: FramePose | None = None
+    """What is read from the transforms on the topic of `path`; None: the field of `path`."""
     span: Span | None = field(default=None, compare=False, repr=False)
 
     @property
     def scale(self) -> Fraction:
-        """Factor from the field's unit to base units; a clearance is in base units already."""
-        return Fraction(1) if self.reduce is Reduce.OUTLINE else self.unit.factor
+        """Factor to base units; a clearance and a number of a pose are in base units already."""
+        is_base = self.reduce is Reduce.OUTLINE or self.pose is not None
+        return Fraction(1) if is_base else self.unit.factor
 
 
 @dataclass(frozen=True, slots=True)

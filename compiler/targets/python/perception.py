@@ -16,7 +16,7 @@ from compiler.formalization.binding_agreement import binding_fix
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.signals import numbers as n
 from compiler.signals.policies import PropositionFunctions, SamplePolicy, instant
-from fretish.bindings.declarations import Declarations, Reduce
+from fretish.bindings.declarations import Declarations, Reduce, Signal
 from fretish.classes.frozen import dataclass
 from fretish.clock import TimeSource
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -93,7 +93,8 @@ def text(requirements: Sequence[FormalizedRequirement]) -> str:
         requirements: requirements of one project that were not refused.
     """
     table = setting(requirements)
-    joined = runtime(rounds=any("rounded(" in meaning for meaning in table.meanings))
+    rounds = any("rounded(" in meaning for meaning in table.meanings)
+    joined = runtime(rounds=rounds, frames=bool(table.frames))
     return render(
         "ros/perception.py.j2",
         version=__version__,
@@ -118,6 +119,7 @@ def setting(requirements: Sequence[FormalizedRequirement]) -> SettingTable:
         declared.clock.effective_lateness or 0,
         declared.clock.time is TimeSource.HEADER_STAMP,
         tuple(f"({requirement.id!r}, {topics_of(requirement)!r})" for requirement in requirements),
+        tuple(_query(each.signal) for each in at_instant.policies if each.signal.pose is not None),
     )
 
 
@@ -132,6 +134,8 @@ class SettingTable:
     lateness: int
     stamped: bool
     reads: tuple[str, ...]
+    frames: tuple[str, ...] = ()
+    """The queries of signals of frames."""
 
 
 def topics_of(requirement: FormalizedRequirement) -> tuple[str, ...]:
@@ -139,6 +143,13 @@ def topics_of(requirement: FormalizedRequirement) -> tuple[str, ...]:
     at_instant = instant([requirement])
     assert at_instant is not None, "it is refused"
     return tuple(dict.fromkeys(policy.signal.path.topic for policy in at_instant.policies))
+
+
+def _query(signal: Signal) -> str:
+    pose = signal.pose
+    assert pose is not None
+    parts = (signal.name, signal.path.topic, pose.frame, pose.reference, str(pose.number))
+    return f"FrameQuery({', '.join(map(repr, parts))})"
 
 
 def _policy(policy: SamplePolicy) -> str:
@@ -154,6 +165,7 @@ def _policy(policy: SamplePolicy) -> str:
         "max_age": signal.max_age,
         "words": signal.values,
         "numbers": signal.numbers,
+        "is_pose": signal.pose is not None,
     }
     if signal.reduce is Reduce.OUTLINE:
         parts |= {"scale": str(signal.unit.factor), "sensor": signal.sensor}

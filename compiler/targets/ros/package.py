@@ -44,6 +44,8 @@ class SubscribedTopic:
     """The name of the message type, such as `LaserScan`."""
     fields: tuple[str, ...]
     """The fields that are read, as the bindings name them: `ranges[:]`."""
+    is_kept: bool = False
+    """Whether its publishers keep their messages for later subscribers (`transient_local`)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -236,7 +238,10 @@ def _topics(signals: Sequence[Signal]) -> Iterator[SubscribedTopic]:
         kind = ROS_TYPE.fullmatch(_kind(own[0]))
         assert kind is not None, "it is refused"
         fields = dict.fromkeys(str(signal.path).removeprefix(f"{topic}.") for signal in own)
-        yield SubscribedTopic(topic, kind["package"], kind["message"], tuple(fields))
+        names = kind["package"], kind["message"], tuple(fields)
+        yield SubscribedTopic(topic, *names)
+        if any(signal.pose is not None for signal in own):
+            yield SubscribedTopic(f"{topic}_static", *names, is_kept=True)
 
 
 def _parameters(

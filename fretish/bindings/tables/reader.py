@@ -18,6 +18,7 @@ from fretish.bindings.tables.clock import ClockTable
 from fretish.bindings.tables.computed import ComputedTables
 from fretish.bindings.tables.coordinates import MapTable
 from fretish.bindings.tables.fields import Fields, Notes
+from fretish.bindings.tables.frames import FrameTables
 from fretish.bindings.tables.interceptor import InterceptorTables
 from fretish.bindings.tables.labels import LabelTable
 from fretish.bindings.tables.propositions import PropositionTables
@@ -75,8 +76,13 @@ class _TablesReader(Fields):
         self._check_keys(tables.data, FIELDS, "the bindings")
         written = self._tables("signal")
         of_signals = SignalTables(tables, notes)
+        of_frames = FrameTables(tables, notes, of_signals.known)
         recorded = {name: table for name, table in written.items() if "value" not in table}
-        signals = self._parts("signal", of_signals.signal, recorded)
+        signals = self._parts(
+            "signal",
+            lambda name, table: (of_frames if "frame" in table else of_signals).signal(name, table),
+            recorded,
+        )
         of_computed = ComputedTables(tables, notes, of_signals.known)
         ordered = of_computed.ordered(
             {name: table for name, table in written.items() if "value" in table}

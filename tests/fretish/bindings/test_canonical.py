@@ -17,8 +17,10 @@ from fretish.bindings.declarations import (
     REP_117,
     Aggregate,
     Declarations,
+    FramePose,
     Modality,
     Path,
+    PoseNumber,
     Reduce,
     Role,
 )
@@ -64,6 +66,7 @@ SIGNAL: dict[str, Any] = {
     "invalid": REP_117,
     "max_age": 5,
     "values": ("a", "b"),
+    "pose": FramePose("base_link", "map", PoseNumber.YAW),
 }
 PROPOSITION: dict[str, Any] = {
     "expression": read("x > 2 m"),
