@@ -346,12 +346,7 @@ class FrameSignals:
         buffer = self._buffers[topic if static is None else static]
         for transform in transforms:
             buffer.put(transform, static=static is not None)
-        samples: dict[str, Reading] = {}
-        if static is None:
-            for query in self._queries:
-                if query.topic == topic and self._answer(query):
-                    samples[query.name] = self._answers[query.name][1]
-        return samples
+        return self._changes(topic) if static is None else {}
 
     def read(self, topic: str, message: Any) -> "Mapping[str, Reading]":
         """Add the transforms of a message; None: a message that cannot be read.
@@ -381,12 +376,21 @@ class FrameSignals:
             self._answers.pop(name, None)
         return dict.fromkeys(lost)
 
-    def _answer(self, query: FrameQuery) -> bool:
-        """Compute the answer to a query; whether it has changed."""
-        buffer = self._buffers[query.topic]
-        time = buffer.latest_common_time(query.target, query.source)
-        pose = None if time is None else buffer.lookup(query.target, query.source, time)
-        answer = time, None if pose is None else pose_number(query.number, pose)
-        changed = self._answers.get(query.name) != answer
-        self._answers[query.name] = answer
-        return changed
+    def _changes(self, topic: str) -> "Mapping[str, Reading]":
+        """The samples of the signals of a topic whose answers have changed."""
+        buffer = self._buffers[topic]
+        poses: dict[tuple[str, str], tuple[int | None, Pose | None]] = {}
+        samples: dict[str, Reading] = {}
+        for query in self._queries:
+            if query.topic != topic:
+                continue
+            pair = query.target, query.source
+            if pair not in poses:
+                time = buffer.latest_common_time(*pair)
+                poses[pair] = time, None if time is None else buffer.lookup(*pair, time)
+            time, pose = poses[pair]
+            answer = time, None if pose is None else pose_number(query.number, pose)
+            if self._answers.get(query.name) != answer:
+                self._answers[query.name] = answer
+                samples[query.name] = answer[1]
+        return samples

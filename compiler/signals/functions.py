@@ -172,7 +172,7 @@ def _signal(policy: SamplePolicy, name: str, language: NumberSyntax) -> SignalFu
     unit = f", {signal.unit_name}" if signal.unit_name else ""
     return SignalFunction(
         name,
-        str(signal.pose) if signal.pose is not None else f"{signal.path}{unit}",
+        signal.origin if signal.pose is not None else f"{signal.path}{unit}",
         _text(policy),
         "given" if policy.is_given else form,
         signal.reduce,

@@ -177,6 +177,11 @@ class Signal:
     span: Span | None = field(default=None, compare=False, repr=False)
 
     @property
+    def origin(self) -> str:
+        """What its samples are read from: `/odom.twist.x`, or `x of base_link in map`."""
+        return str(self.path if self.pose is None else self.pose)
+
+    @property
     def scale(self) -> Fraction:
         """Factor to base units; a clearance and a number of a pose are in base units already."""
         is_base = self.reduce is Reduce.OUTLINE or self.pose is not None
