@@ -32,6 +32,8 @@ _FUNCTIONS = ("rounded_functions",)
 """The modules of the functions of computed signals."""
 _FRAMES = ("transforms",)
 """The modules of signals of frames."""
+_GOALS = ("goals",)
+"""The modules of signals of actions."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,14 +64,17 @@ def interceptor() -> Runtime:
 
 
 @cache
-def perception(*, rounds: bool = False, frames: bool = False) -> Runtime:
+def perception(*, rounds: bool = False, frames: bool = False, goals: bool = False) -> Runtime:
     """The modules that a live node needs in addition to its monitor.
 
     Args:
         rounds: whether it calls the functions of computed signals.
         frames: whether it has signals of frames.
+        goals: whether it has signals of actions.
     """
-    return _joined(_ROOM, (*_LIVE, *(_FUNCTIONS if rounds else ()), *(_FRAMES if frames else ())))
+    optional = ((rounds, _FUNCTIONS), (frames, _FRAMES), (goals, _GOALS))
+    modules = (module for wanted, some in optional if wanted for module in some)
+    return _joined(_ROOM, (*_LIVE, *modules))
 
 
 def _joined(folder: Path, modules: Sequence[str]) -> Runtime:

@@ -55,12 +55,14 @@ class SamplePolicy:
 
     @property
     def is_given(self) -> bool:
-        """Whether the caller computes the number: a mean in the field's unit, a clearance, a pose.
+        """Whether the caller computes the number, which is not exact or not of one field.
 
-        A number of a pose is in base units.
+        It is a mean in the field's unit, a clearance or a number of a pose in base units, or a
+        status of goals, as its place in the signal's values.
         """
         signal = self.signal
-        return signal.reduce in (Reduce.MEAN, Reduce.OUTLINE) or signal.pose is not None
+        is_rounded = signal.reduce in (Reduce.MEAN, Reduce.OUTLINE)
+        return is_rounded or signal.pose is not None or signal.goals is not None
 
     @property
     def is_array(self) -> bool:

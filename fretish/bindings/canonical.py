@@ -99,6 +99,8 @@ def signal_fields(signal: Signal) -> dict[str, Any]:
     }
     if signal.pose is not None:
         meaning["pose"] = [signal.pose.frame, signal.pose.reference, str(signal.pose.number)]
+    if signal.goals is not None:
+        meaning["goals"] = [str(signal.goals.choice), sorted(signal.goals.statuses)]
     return meaning | {"values": _values(signal)} if signal.values else meaning
 
 

@@ -127,6 +127,32 @@ class FramePose:
         return f"{self.number} of {self.frame} in {self.reference}"
 
 
+class GoalChoice(StrEnum):
+    """Which goals of an action of ROS 2 count, of several at once."""
+
+    LATEST = "latest"
+    """The one that was accepted last."""
+    ANY = "any"
+    ALL = "all"
+
+
+@dataclass(frozen=True, slots=True)
+class GoalStatus:
+    """The status of the latest goal of an action, or whether any or all have one of `statuses`."""
+
+    action: str
+    choice: GoalChoice = GoalChoice.LATEST
+    statuses: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        """In words: `status of /dock`, `any goal of /dock is canceled or aborted`."""
+        if self.choice is GoalChoice.LATEST:
+            return f"status of {self.action}"
+        plural = "goals of" if self.choice is GoalChoice.ALL else "goal of"
+        verb = "are" if self.choice is GoalChoice.ALL else "is"
+        return f"{self.choice} {plural} {self.action} {verb} {' or '.join(self.statuses)}"
+
+
 class Role(StrEnum):
     """FRET's types of variable."""
 
@@ -174,12 +200,14 @@ class Signal:
     numbers: tuple[int, ...] = ()
     pose: FramePose | None = None
     """What is read from the transforms on the topic of `path`; None: the field of `path`."""
+    goals: GoalStatus | None = None
+    """What is read from the statuses of goals on the topic of `path`."""
     span: Span | None = field(default=None, compare=False, repr=False)
 
     @property
     def origin(self) -> str:
         """What its samples are read from: `/odom.twist.x`, or `x of base_link in map`."""
-        return str(self.path if self.pose is None else self.pose)
+        return str(self.pose or self.goals or self.path)
 
     @property
     def scale(self) -> Fraction:

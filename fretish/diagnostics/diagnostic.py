@@ -89,6 +89,7 @@ class Code(Enum):
     BAD_LATENESS = ("F355", "the lateness of the clock is not a duration of at most a minute")
     PLAIN_PERCENT = ("F338", "a plain number is compared with a signal in percent")
     BAD_FRAMES = ("F360", "a signal of frames is not complete, or cannot be read")
+    BAD_GOALS = ("F361", "a signal of an action or a service is not complete, or cannot be read")
     WHICH_UNIT = ("F350", "the unit of a bare number is ambiguous")
     UNIT_IN_SENTENCE = ("F352", "a number in a sentence has a unit, which FRET cannot read")
     SEVERAL_AGGREGATES = (

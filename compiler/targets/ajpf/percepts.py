@@ -64,8 +64,8 @@ def _of_signal(signal: Signal, declared: Declarations) -> Iterator[tuple[str, st
     kind, topic = short_type(signal.type or ""), signal.path.topic
     if signal.reduce is Reduce.MEAN:
         yield f"`{signal.name}`, a mean", "reduce it by `min` or `max`"
-    if signal.pose is not None:
-        yield f"`{signal.name}`, which is read from transforms", "publish the value as a field"
+    if signal.pose is not None or signal.goals is not None:
+        yield f"`{signal.name}`, the {signal.origin}", "publish the value as a field"
     if ROS_TYPE.fullmatch(kind) is None:
         fix = f'add `type = "sensor_msgs/LaserScan"`, say, to `[signal.{signal.name}]`'
         yield f"`{signal.name}`, which has no ROS type", fix

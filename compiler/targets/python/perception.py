@@ -94,7 +94,8 @@ def text(requirements: Sequence[FormalizedRequirement]) -> str:
     """
     table = setting(requirements)
     rounds = any("rounded(" in meaning for meaning in table.meanings)
-    joined = runtime(rounds=rounds, frames=bool(table.frames))
+    goals = any("goal_status(" in policy for policy in table.policies)
+    joined = runtime(rounds=rounds, frames=bool(table.frames), goals=goals)
     return render(
         "ros/perception.py.j2",
         version=__version__,
@@ -173,6 +174,9 @@ def _policy(policy: SamplePolicy) -> str:
     texts = {name: repr(part) for name, part in parts.items() if part not in (None, False, (), "")}
     if policy.valid is not None:
         texts["valid"] = f"lambda row: {_truth(policy.valid)}"
+    if signal.goals is not None:
+        goals = f"{str(signal.goals.choice)!r}, {signal.goals.statuses!r}"
+        texts["read"] = f"lambda message: goal_status(message, {goals})"
     measured = _measured(policy)
     if measured is not None:
         names = "".join(f", {name}" for name in _besides(policy).values())

@@ -110,7 +110,7 @@ class Package:
 
 # What cannot be a package -----------------------------------------------------------------------
 
-_TOPIC = re.compile(r"/?[A-Za-z]\w*(?:/[A-Za-z]\w*)*", re.ASCII)
+_TOPIC = re.compile(r"/?[A-Za-z]\w*(?:/[A-Za-z_]\w*)*", re.ASCII)
 
 
 def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
@@ -239,7 +239,8 @@ def _topics(signals: Sequence[Signal]) -> Iterator[SubscribedTopic]:
         assert kind is not None, "it is refused"
         fields = dict.fromkeys(str(signal.path).removeprefix(f"{topic}.") for signal in own)
         names = kind["package"], kind["message"], tuple(fields)
-        yield SubscribedTopic(topic, *names)
+        is_kept = any(signal.goals is not None for signal in own)
+        yield SubscribedTopic(topic, *names, is_kept=is_kept)
         if any(signal.pose is not None for signal in own):
             yield SubscribedTopic(f"{topic}_static", *names, is_kept=True)
 

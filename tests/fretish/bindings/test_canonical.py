@@ -18,6 +18,8 @@ from fretish.bindings.declarations import (
     Aggregate,
     Declarations,
     FramePose,
+    GoalChoice,
+    GoalStatus,
     Modality,
     Path,
     PoseNumber,
@@ -67,6 +69,7 @@ SIGNAL: dict[str, Any] = {
     "max_age": 5,
     "values": ("a", "b"),
     "pose": FramePose("base_link", "map", PoseNumber.YAW),
+    "goals": GoalStatus("/a", GoalChoice.ANY, ("aborted",)),
 }
 PROPOSITION: dict[str, Any] = {
     "expression": read("x > 2 m"),
