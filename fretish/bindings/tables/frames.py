@@ -26,8 +26,8 @@ class FrameTables(SignalTables):
         at, before = ("signal", name), len(self.notes.diagnostics)
         self._check_keys(table, _FIELDS, f"[signal.{name}] with `frame`", *at)
         pose = self._pose(table, at)
-        unit_name = "" if pose is None else "rad" if pose.number.is_angle else "m"
-        unit_name = self._field(table, (*at, "unit"), str, "a unit in quotes") or unit_name
+        base = "rad" if pose is not None and pose.number.is_angle else "m"
+        unit_name = self._field(table, (*at, "unit"), str, "a unit in quotes") or base
         unit = units.unit(unit_name)
         if unit is None:
             self._say(units.unknown_unit(unit_name, self.tables.value(*at, "unit")))
