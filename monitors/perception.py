@@ -31,6 +31,8 @@ class BindingConfig(NamedTuple):
     """Whether the time of a message is the stamp of its header."""
     reads: "tuple[tuple[str, tuple[str, ...]], ...]" = ()
     """Id of each requirement, and the topics that it reads."""
+    frames: "Callable[[], Any] | None" = None
+    """Function that makes the `FrameSignals` of `monitors/transforms.py`; None: there are none."""
 
     @property
     def topics(self) -> "tuple[str, ...]":
@@ -203,6 +205,7 @@ class OnlineEvaluator:
             setting: the configuration from the bindings.
         """
         self._make, self._setting = monitor, setting
+        self._frames = None if setting.frames is None else setting.frames()
         self.resets = 0
         """The number of times that a clock was set and a new run began."""
         self.changes = 0
@@ -211,6 +214,8 @@ class OnlineEvaluator:
 
     def _begin(self) -> None:
         self.perception = Perception(self._setting)
+        if self._frames is not None:
+            self._frames.forget()
         self.monitor = self._make()
         self.ledger = Ledger((self.monitor,), KEPT)
         self.changes += 1
@@ -247,8 +252,12 @@ class OnlineEvaluator:
             if message is None
             else sample(policy, message, policy.name in singles)
             for policy in self._setting.policies
-            if policy.topic == topic
+            if policy.topic == topic and not policy.is_pose
         }
+        if self._frames is not None and self._frames.reads(topic):
+            values.update(self._frames.read(topic, message))
+            if topic in self._frames.static_topics:  # They count from the next others on.
+                return
         self._latest[topic] = max(time, self._latest.get(topic, time))
         found = self.perception.arrive(topic, time, self._received, values)
         if found is not None:

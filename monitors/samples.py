@@ -48,6 +48,10 @@ class Policy(NamedTuple):
     """The factor from the field's unit to metres, for `outline`."""
     footprint: "tuple[tuple[float, float], ...]" = ()
     sensor: "tuple[float, float, float]" = (0.0, 0.0, 0.0)
+    read: "Callable[[Any], Reading] | None" = None
+    """Function of a message that gives the sample; None: it is read from the field."""
+    is_pose: bool = False
+    """Whether it is read from transforms, not from a field: `BindingConfig.frames` has them."""
 
 
 def field(message: Any, path: "Iterable[str]") -> Any:
@@ -73,6 +77,8 @@ def sample(policy: Policy, message: Any, single: bool = False) -> Reading:
         AttributeError: the message has no such field.
         TypeError: the field does not hold numbers.
     """
+    if policy.read is not None:
+        return policy.read(message)
     value = field(message, policy.fields)
     if policy.place is not None:
         if policy.place >= len(value):

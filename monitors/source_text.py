@@ -32,6 +32,10 @@ _FUNCTIONS = ("rounded_functions",)
 """The modules of the functions of computed signals."""
 _MEMORY = ("memory",)
 """The modules of signals with memory."""
+_FRAMES = ("transforms",)
+"""The modules of signals of frames."""
+_GOALS = ("goals",)
+"""The modules of signals of actions."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,15 +66,20 @@ def interceptor() -> Runtime:
 
 
 @cache
-def perception(*, rounds: bool = False, remembers: bool = False) -> Runtime:
+def perception(
+    *, rounds: bool = False, remembers: bool = False, frames: bool = False, goals: bool = False
+) -> Runtime:
     """The modules that a live node needs in addition to its monitor.
 
     Args:
         rounds: whether it calls the functions of computed signals.
         remembers: whether it has signals with memory.
+        frames: whether it has signals of frames.
+        goals: whether it has signals of actions.
     """
-    modules = (*_LIVE, *(_FUNCTIONS if rounds else ()), *(_MEMORY if remembers else ()))
-    return _joined(_ROOM, modules)
+    optional = ((rounds, _FUNCTIONS), (remembers, _MEMORY), (frames, _FRAMES), (goals, _GOALS))
+    modules = (module for wanted, some in optional if wanted for module in some)
+    return _joined(_ROOM, (*_LIVE, *modules))
 
 
 def _joined(folder: Path, modules: Sequence[str]) -> Runtime:

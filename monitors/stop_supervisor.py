@@ -109,7 +109,7 @@ class StopSupervisor:
         """Process a message with fields as attributes; `singles` is from `single_signals`."""
         time = stamp(message) if self._setting.stamped else None
         time = now if time is None else time
-        self._counts[topic] += 1
+        self._counts[topic] = self._counts.get(topic, 0) + 1
         try:
             self._judge(lambda: self._evaluator.arrive(topic, time, now, message, singles), now)
         except (AttributeError, TypeError, ValueError) as error:
@@ -305,7 +305,7 @@ def single_signals(
     Raises:
         ValueError: the message does not have a field of the bindings.
     """
-    own = [policy for policy in setting.policies if policy.topic == topic]
+    own = [each for each in setting.policies if each.topic == topic and not each.is_pose]
     for policy in own:
         angles = ("angle_min", "angle_increment") if policy.reduce == "outline" else ()
         for name in (*policy.beside, *angles):

@@ -26,7 +26,7 @@ compiler.targets.java  compiler.targets.ros  compiler.targets.javascript
 compiler.targets.automata  compiler.targets.ajpf
 compiler  compiler.explanation
 fretc.logs.signals  fretc.logs.mcap  fretc.logs.messages  fretc.logs.storage  fretc.logs.tables
-fretc.logs.agents  fretc.logs.windows
+fretc.logs.agents  fretc.logs.frames  fretc.logs.windows
 fretc.logs
 fretc.audit.measurements  fretc.audit.phases  fretc.audit.evidence  fretc.audit.store  fretc.audit
 fretc.audit.selection  fretc.audit.outputs  fretc.audit.bindings

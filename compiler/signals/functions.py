@@ -172,7 +172,7 @@ def _signal(policy: SamplePolicy, name: str, language: NumberSyntax) -> SignalFu
     unit = f", {signal.unit_name}" if signal.unit_name else ""
     return SignalFunction(
         name,
-        f"{signal.path}{unit}",
+        signal.origin if signal.origin != str(signal.path) else f"{signal.path}{unit}",
         _text(policy),
         "given" if policy.is_given else form,
         signal.reduce,
@@ -208,6 +208,13 @@ def _text(policy: SamplePolicy) -> str:
     signal = policy.signal
     if signal.memory is not None:
         return f"The number of {signal.name} is computed by the caller: {signal.memory.text}."
+    if signal.pose is not None:
+        unit = "radians" if signal.pose.number.is_angle else "metres"
+        return f"The number of {signal.name} is computed by the caller: {signal.pose}, in {unit}."
+    if signal.goals is not None:
+        places = f": 0 to {len(signal.values) - 1} for {', '.join(signal.values)}"
+        what = f"{signal.goals}{places if signal.values else ': 1 or 0'}"
+        return f"The number of {signal.name} is given by the caller: {what}."
     if policy.is_given:
         return f"The number of {signal.name} is computed by the caller: {signal.reduce}."
     if signal.values:

@@ -55,11 +55,14 @@ class SamplePolicy:
 
     @property
     def is_given(self) -> bool:
-        """Whether the caller computes the number.
+        """Whether the caller computes the number, which is not exact or not of one field.
 
-        It is a mean in the field's unit, a clearance, or the value of a signal with memory.
+        It is a mean in the field's unit, a clearance or a number of a pose in base units, a status
+        of goals, as its place in the signal's values, or the value of a signal with memory.
         """
-        return self.signal.memory is not None or self.signal.reduce in (Reduce.MEAN, Reduce.OUTLINE)
+        signal = self.signal
+        is_rounded = signal.reduce in (Reduce.MEAN, Reduce.OUTLINE)
+        return is_rounded or any((signal.pose, signal.goals, signal.memory))
 
     @property
     def is_array(self) -> bool:

@@ -367,6 +367,8 @@ def _recording(
 ) -> Recording:
     lost = [gap for _, _, gap in run.damages if gap is not None]
     gaps = tuple(sorted({columns.on_clock(gap) for gap in lost}))
+    watch = watched(columns, run.described, place)
+    columns.frames.gaps = [*lost, *watch.missed]
     origin = min(start for start, _ in [*run.spans, *lost])
     damages = [
         log_diagnostics.damaged(damage, gap, origin, file) for file, damage, gap in run.damages
@@ -379,7 +381,6 @@ def _recording(
         for signals in (wanted, beside)
     )
     start, end = columns.span((min(a for a, _ in run.spans), max(b for _, b in run.spans)))
-    watch = watched(columns, run.described, place)
     missed = [columns.on_clock(span) for span in watch.missed]
     gaps = tuple(sorted({*gaps, *missed}))
     last = max([end, *(gap[1] for gap in gaps), watch.until])

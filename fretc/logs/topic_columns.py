@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from fretc.logs import log_diagnostics
 from fretc.logs.agents.reports import AgentReports
 from fretc.logs.extraction import Extract, Extraction
+from fretc.logs.frames.frame_columns import FrameColumns
 from fretc.logs.mcap.container import ChannelDefinition
 from fretc.logs.mcap.damage import LATEST
 from fretc.logs.mcap.messages import FileTimes, Messages
@@ -100,7 +101,8 @@ class TopicColumn:
 
     def refuse(self, signal: Signal, diagnostic: Diagnostic) -> None:
         """Drop the samples of a signal, for the given reason."""
-        self.signals.remove(signal)
+        if signal in self.signals:
+            self.signals.remove(signal)
         self.diagnostics[signal.name] = diagnostic
         self.values.pop(signal.name, None)
         self.foreign.pop(signal.name, None)
@@ -159,6 +161,7 @@ class Columns:
         self._wanted = wanted
         topics = {signal.path.topic for signal in wanted}
         self._read_signals = (*wanted, *(one for one in beside if one.path.topic in topics))
+        self.frames = FrameColumns(self._read_signals)
         self._bound = {signal.path.topic for signal in declarations.signals.values()}
         self._bound |= {self.clock.topic} if self.clock.topic else set()
         self._extractions: dict[int, Extraction] = {}
@@ -175,10 +178,11 @@ class Columns:
                 type_,
                 stream.channel.message_encoding,
                 topic in self._bound,
-                [signal for signal in self._read_signals if signal.path.topic == topic],
+                [s for s in self._read_signals if s.path.topic == topic and s.pose is None],
             )
         column = self.topics[topic]
-        for signal in tuple(column.signals):
+        poses = [signal for signal in self.frames.signals if signal.path.topic == topic]
+        for signal in (*column.signals, *poses):
             declared = signal.type and short_type(signal.type)
             if stream.schema and declared and declared != short_type(type_):
                 column.refuse(signal, log_diagnostics.wrong_type(signal, type_))
@@ -190,10 +194,12 @@ class Columns:
         column = self.topics[stream.channel.topic]
         if column.name == self.reports.topic:
             self.reports.take(stream, log_time, publish_time, bytes(payload))
+        if self.frames.is_static(column.name):
+            self.frames.take(stream, [log_time], [bytes(payload)])
         if not column.bound:
             column.logs.append(log_time)
             return
-        payloads = [bytes(payload) if self._decodes(column) else b""]
+        payloads = [bytes(payload) if self._keeps(column) else b""]
         self._wait(column, stream, [log_time], [publish_time], payloads)
 
     def add_all(self, stream: ChannelDefinition, messages: Messages) -> None:
@@ -204,6 +210,8 @@ class Columns:
             times = zip(logs.tolist(), messages.publishes.tolist(), strict=True)
             for payload, (log, publish) in zip(messages.payloads.copies(), times, strict=True):
                 self.reports.take(stream, log, publish, payload)
+        if self.frames.is_static(column.name):
+            self.frames.take(stream, logs.tolist(), messages.payloads.copies())
         if not column.bound:
             column.logs.frombytes(logs.tobytes())
             return
@@ -211,12 +219,12 @@ class Columns:
             self._settle(column)
             self._read(column, stream, logs, messages.publishes, messages.payloads)
             return
-        payloads = messages.payloads.copies() if self._decodes(column) else [b""] * len(logs)
+        payloads = messages.payloads.copies() if self._keeps(column) else [b""] * len(logs)
         self._wait(column, stream, logs.tolist(), messages.publishes.tolist(), payloads)
 
     def wants(self, topic: str) -> bool:
-        """Whether the topic is bound, or has the reports of agents."""
-        return topic in self._bound or topic == self.reports.topic
+        """Whether the topic is bound, or has the reports of agents or static transforms."""
+        return topic in self._bound or topic == self.reports.topic or self.frames.reads(topic)
 
     def count(self, stream: ChannelDefinition, count: int) -> None:
         """Count messages of a topic that is not bound."""
@@ -225,6 +233,10 @@ class Columns:
     def _decodes(self, column: TopicColumn) -> bool:
         """Whether messages of the topic must be decoded."""
         return bool(column.signals) or self.clock.time is TimeSource.HEADER_STAMP
+
+    def _keeps(self, column: TopicColumn) -> bool:
+        """Whether the payloads of messages of the topic are needed."""
+        return self._decodes(column) or self.frames.reads(column.name)
 
     def _wait(
         self,
@@ -279,6 +291,9 @@ class Columns:
         times, dated = self._times(column, extract, logs, publishes)
         usable = times < LATEST
         column.undecoded += int((~usable).sum())
+        if self.frames.reads(column.name) and not self.frames.is_static(column.name):
+            kept = [one for one, use in zip(payloads.copies(), usable, strict=True) if use]
+            self.frames.take(stream, logs[usable].tolist(), kept)
         before = len(column.times)
         column.logs.frombytes(logs[usable].tobytes())
         column.times.frombytes(times[usable].tobytes())
@@ -333,6 +348,8 @@ class Columns:
     def samples(self, signal: Signal) -> tuple[Times, Values]:
         """Times and values of one signal, in order of time; empty if it has a diagnostic."""
         column = self.topics.get(signal.path.topic)
+        if column is not None and signal.pose is not None and signal.name not in column.diagnostics:
+            return self.frames.samples(signal, column.stamps(), column.unset)
         if column is None or signal.name not in column.values:
             return np.zeros(0, np.int64), np.zeros(0)
         times, numbers = column.stamps(), column.numbers(signal)
@@ -396,10 +413,11 @@ class Columns:
         ]
         if self.clock.topic and not self.ticks().size:
             diagnostics.append(self._absent(self.clock.topic, self._clock_place(self.clock.topic)))
+        refused = {name for column in self.topics.values() for name in column.diagnostics}
         for topic, signal in {signal.path.topic: signal for signal in self._wanted}.items():
             if topic in self.topics:
                 diagnostics += self._oddities(self.topics[topic], signal)
-        return [*diagnostics, *self._foreign_values()]
+        return [*diagnostics, *self._foreign_values(), *self.frames.findings(refused)]
 
     def _foreign_values(self) -> Iterator[Diagnostic]:
         """Warnings about samples of enumeration signals that are not among their values."""
@@ -435,8 +453,9 @@ class Columns:
         diagnostics, count = [], len(column.logs)
         if len(column.types) > 1 and signal.type is None:
             diagnostics.append(log_diagnostics.several_types(signal, list(column.types)))
-        if column.undecoded:
-            diagnostics.append(log_diagnostics.bad_messages(signal, column.undecoded, count))
+        undecoded = column.undecoded + self.frames.undecoded.get(column.name, 0)
+        if undecoded:
+            diagnostics.append(log_diagnostics.bad_messages(signal, undecoded, count))
         if late := column.late():
             diagnostics.append(log_diagnostics.out_of_order(signal, late, count))
         if column.unstamped:

@@ -26,7 +26,7 @@ def never_stated(
     for signal in wanted:
         values = samples[signal.name].values
         payloads = examples.of(signal.path.topic)
-        if not payloads or not len(values) or not np.isnan(values).all():
+        if signal.pose is not None or not payloads or not len(values) or not np.isnan(values).all():
             continue
         leaves = message_leaves(payloads)
         paths = [

@@ -130,7 +130,7 @@ def _of_variable(project: Project, name: str) -> Iterator[str]:
         yield from ["", _plain(proposition.text)] if proposition.text else ()
     if signal is not None:
         unit = f" in {_code(signal.unit_name)}" if signal.unit_name else ""
-        source = signal.text if isinstance(signal, ComputedSignal) else str(signal.path)
+        source = signal.text if isinstance(signal, ComputedSignal) else signal.origin
         yield f"signal{unit}: {_code(source)}"
         if signal.values:
             yield f"\nvalues: {', '.join(map(_code, signal.values))}"

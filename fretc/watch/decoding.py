@@ -8,7 +8,7 @@ message with a time, it waits for that. Times are nanoseconds.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import field, replace
 from math import isnan
 
 from mcap.records import Channel as McapChannel
@@ -16,6 +16,7 @@ from mcap.records import Schema
 
 from fretc.logs import log_diagnostics
 from fretc.logs.extraction import Extract, Extraction
+from fretc.logs.frames.live_frames import LiveFrames
 from fretc.logs.mcap.container import ChannelDefinition
 from fretc.logs.mcap.damage import LATEST
 from fretc.logs.mcap.payloads import Payloads
@@ -68,11 +69,16 @@ class Decoder:
         names |= {declarations.clock.topic} if declarations.clock.topic else set()
         self._topics = {
             name: _Topic(
-                [signal for signal in signals if signal.path.topic == name],
-                unknown={each.name: _NOTHING for each in signals if each.path.topic == name},
+                [each for each in signals if each.path.topic == name and each.pose is None],
+                unknown={
+                    each.name: _NOTHING
+                    for each in signals
+                    if each.path.topic == name and each.pose is None
+                },
             )
             for name in names
         }
+        self._frames = LiveFrames(signals)
         self._extractions: dict[Channel, Extraction] = {}
         self._single: dict[Channel, SingleMessages] = {}
         self.undecoded: dict[str, int] = {}
@@ -81,10 +87,31 @@ class Decoder:
     @property
     def topics(self) -> frozenset[str]:
         """The topics that are read."""
-        return frozenset(self._topics)
+        return frozenset(self._topics) | self._frames.topics
+
+    @property
+    def static_topics(self) -> frozenset[str]:
+        """The topics of static transforms."""
+        return self._frames.topics - self._topics.keys()
+
+    def lose(self) -> None:
+        """Record that messages were lost: transforms are known again from later ones on."""
+        self._frames.lose()
 
     def read(self, arrival: Arrival) -> tuple[list[Timed], list[Diagnostic]]:
         """The message, with those that waited for its time, and diagnostics of its channel."""
+        messages, problems = self._read(arrival)
+        if not self._frames.reads(arrival.channel.topic):
+            return messages, problems
+        channel = arrival.channel
+        samples = self._frames.read(stream_of(channel), channel, arrival.payload)
+        problems += self._frames.take_problems()
+        if not messages:
+            return [], problems
+        *held, last = messages
+        return [*held, replace(last, values={**last.values, **samples})], problems
+
+    def _read(self, arrival: Arrival) -> tuple[list[Timed], list[Diagnostic]]:
         topic = self._topics.get(arrival.channel.topic)
         if topic is None:
             return [], []

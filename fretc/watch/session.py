@@ -119,6 +119,11 @@ class Session:
         return reads
 
     @property
+    def static_topics(self) -> frozenset[str]:
+        """The topics of static transforms, which are published once."""
+        return self._decoder.static_topics
+
+    @property
     def missed(self) -> tuple[Gap, ...]:
         """The intervals of missed messages, by receive time."""
         return tuple(self._missed)
@@ -220,6 +225,7 @@ class Session:
         since, the time from `since` on is unknown.
         """
         self.interrupted, self._ahead = False, None
+        self._decoder.lose()
         if self._missed and since <= self._missed[-1][1]:
             before = self._missed.pop()
             since, until = min(since, before[0]), max(until, before[1])

@@ -170,7 +170,7 @@ class Watch:
         if now - self._began < SILENCE:
             return
         for name, topic in self.session.topics.items():
-            if not topic.count and name not in self._silent:
+            if not topic.count and name not in self._silent | self.session.static_topics:
                 self._silent.add(name)
                 yield DiagnosticEvent(_silent(name))
 

@@ -100,6 +100,10 @@ def signal_fields(signal: Signal) -> dict[str, Any]:
     if signal.memory is not None:
         memory = signal.memory
         meaning |= {"memory": [memory.function, memory.over, memory.max_age]}
+    if signal.pose is not None:
+        meaning["pose"] = [signal.pose.frame, signal.pose.reference, str(signal.pose.number)]
+    if signal.goals is not None:
+        meaning["goals"] = [str(signal.goals.choice), sorted(signal.goals.statuses)]
     return meaning | {"values": _values(signal)} if signal.values else meaning
 
 

@@ -96,6 +96,63 @@ def path(text: str) -> Path | None:
     )
 
 
+class PoseNumber(StrEnum):
+    """A number of the pose of one frame in another."""
+
+    X = "x"
+    Y = "y"
+    Z = "z"
+    DISTANCE = "distance"
+    """Between the origins of the two frames."""
+    YAW = "yaw"
+    PITCH = "pitch"
+    ROLL = "roll"
+
+    @property
+    def is_angle(self) -> bool:
+        """Whether it is an angle; the others are lengths."""
+        return self in (PoseNumber.YAW, PoseNumber.PITCH, PoseNumber.ROLL)
+
+
+@dataclass(frozen=True, slots=True)
+class FramePose:
+    """A number of the pose of `frame` in `reference`, from the transforms that tf2 reads."""
+
+    frame: str
+    reference: str
+    number: PoseNumber
+
+    def __str__(self) -> str:
+        """The number in words: `x of base_link in map`."""
+        return f"{self.number} of {self.frame} in {self.reference}"
+
+
+class GoalChoice(StrEnum):
+    """Which goals of an action of ROS 2 count, of several at once."""
+
+    LATEST = "latest"
+    """The one that was accepted last."""
+    ANY = "any"
+    ALL = "all"
+
+
+@dataclass(frozen=True, slots=True)
+class GoalStatus:
+    """The status of the latest goal of an action, or whether any or all have one of `statuses`."""
+
+    action: str
+    choice: GoalChoice = GoalChoice.LATEST
+    statuses: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        """In words: `status of /dock`, `any goal of /dock is canceled or aborted`."""
+        if self.choice is GoalChoice.LATEST:
+            return f"status of {self.action}"
+        plural = "goals of" if self.choice is GoalChoice.ALL else "goal of"
+        verb = "are" if self.choice is GoalChoice.ALL else "is"
+        return f"{self.choice} {plural} {self.action} {verb} {' or '.join(self.statuses)}"
+
+
 class Role(StrEnum):
     """FRET's types of variable."""
 
@@ -161,12 +218,22 @@ class Signal:
     values: tuple[str, ...] = ()
     numbers: tuple[int, ...] = ()
     memory: Memory | None = None
+    pose: FramePose | None = None
+    """What is read from the transforms on the topic of `path`; None: the field of `path`."""
+    goals: GoalStatus | None = None
+    """What is read from the statuses of goals on the topic of `path`."""
     span: Span | None = field(default=None, compare=False, repr=False)
 
     @property
+    def origin(self) -> str:
+        """What its samples are read from: `/odom.twist.x`, or `x of base_link in map`."""
+        return str(self.pose or self.goals or self.path)
+
+    @property
     def scale(self) -> Fraction:
-        """Factor from the field's unit to base units; a clearance is in base units already."""
-        return Fraction(1) if self.reduce is Reduce.OUTLINE else self.unit.factor
+        """Factor to base units; a clearance and a number of a pose are in base units already."""
+        is_base = self.reduce is Reduce.OUTLINE or self.pose is not None
+        return Fraction(1) if is_base else self.unit.factor
 
     @property
     def field_unit(self) -> Unit:

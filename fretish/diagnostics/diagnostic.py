@@ -89,6 +89,8 @@ class Code(Enum):
     BAD_LATENESS = ("F355", "the lateness of the clock is not a duration of at most a minute")
     BAD_MEMORY = ("F356", "a signal with memory is not defined correctly")
     PLAIN_PERCENT = ("F338", "a plain number is compared with a signal in percent")
+    BAD_FRAMES = ("F360", "a signal of frames is not complete, or cannot be read")
+    BAD_GOALS = ("F361", "a signal of an action or a service is not complete, or cannot be read")
     WHICH_UNIT = ("F350", "the unit of a bare number is ambiguous")
     UNIT_IN_SENTENCE = ("F352", "a number in a sentence has a unit, which FRET cannot read")
     SEVERAL_AGGREGATES = (
@@ -139,6 +141,7 @@ class Code(Enum):
     MISSED = ("F434", "the watch that recorded the log has missed messages")
     GROWN = ("F431", "a log grew while it was read")
     TIME_OF_ROWS = ("F435", "the time of the rows of a table is not stated")
+    NO_TRANSFORM = ("F436", "a log has no transform between the two frames of a signal")
     LOG_OUT_OF_TIME = ("F440", "the audit of a log took longer than allowed")
     AUDIT_OUT_OF_TIME = (
         "F441",

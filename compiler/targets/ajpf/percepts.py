@@ -66,6 +66,8 @@ def _of_signal(signal: Signal, declared: Declarations) -> Iterator[tuple[str, st
         yield f"`{signal.name}`, which has memory", "publish the value as a field, and bind it"
     if signal.reduce is Reduce.MEAN:
         yield f"`{signal.name}`, a mean", "reduce it by `min` or `max`"
+    if signal.pose is not None or signal.goals is not None:
+        yield f"`{signal.name}`, the {signal.origin}", "publish the value as a field"
     if ROS_TYPE.fullmatch(kind) is None:
         fix = f'add `type = "sensor_msgs/LaserScan"`, say, to `[signal.{signal.name}]`'
         yield f"`{signal.name}`, which has no ROS type", fix

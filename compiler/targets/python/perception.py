@@ -16,7 +16,7 @@ from compiler.formalization.binding_agreement import binding_fix
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.signals import numbers as n
 from compiler.signals.policies import PropositionFunctions, SamplePolicy, instant
-from fretish.bindings.declarations import Declarations, Reduce
+from fretish.bindings.declarations import Declarations, Reduce, Signal
 from fretish.classes.frozen import dataclass
 from fretish.clock import TimeSource
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -96,6 +96,8 @@ def text(requirements: Sequence[FormalizedRequirement]) -> str:
     joined = runtime(
         rounds=any("rounded(" in meaning for meaning in table.meanings),
         remembers=any("MemorySeries(" in policy for policy in table.policies),
+        frames=bool(table.frames),
+        goals=any("goal_status(" in policy for policy in table.policies),
     )
     return render(
         "ros/perception.py.j2",
@@ -121,6 +123,7 @@ def setting(requirements: Sequence[FormalizedRequirement]) -> SettingTable:
         declared.clock.effective_lateness or 0,
         declared.clock.time is TimeSource.HEADER_STAMP,
         tuple(f"({requirement.id!r}, {topics_of(requirement)!r})" for requirement in requirements),
+        tuple(_query(each.signal) for each in at_instant.policies if each.signal.pose is not None),
     )
 
 
@@ -135,6 +138,8 @@ class SettingTable:
     lateness: int
     stamped: bool
     reads: tuple[str, ...]
+    frames: tuple[str, ...] = ()
+    """The queries of signals of frames."""
 
 
 def topics_of(requirement: FormalizedRequirement) -> tuple[str, ...]:
@@ -142,6 +147,13 @@ def topics_of(requirement: FormalizedRequirement) -> tuple[str, ...]:
     at_instant = instant([requirement])
     assert at_instant is not None, "it is refused"
     return tuple(dict.fromkeys(policy.signal.path.topic for policy in at_instant.policies))
+
+
+def _query(signal: Signal) -> str:
+    pose = signal.pose
+    assert pose is not None
+    parts = (signal.name, signal.path.topic, pose.frame, pose.reference, str(pose.number))
+    return f"FrameQuery({', '.join(map(repr, parts))})"
 
 
 def _policy(policy: SamplePolicy) -> str:
@@ -157,6 +169,7 @@ def _policy(policy: SamplePolicy) -> str:
         "max_age": signal.max_age,
         "words": signal.values,
         "numbers": signal.numbers,
+        "is_pose": signal.pose is not None,
     }
     if signal.reduce is Reduce.OUTLINE:
         parts |= {"scale": str(signal.unit.factor), "sensor": signal.sensor}
@@ -167,6 +180,9 @@ def _policy(policy: SamplePolicy) -> str:
     if signal.memory is not None:
         memory = (signal.memory.function, signal.memory.over, signal.memory.max_age)
         texts["series"] = f"lambda: MemorySeries(Memory{memory!r})"
+    if signal.goals is not None:
+        goals = f"{str(signal.goals.choice)!r}, {signal.goals.statuses!r}"
+        texts["read"] = f"lambda message: goal_status(message, {goals})"
     measured = _measured(policy)
     if measured is not None:
         names = "".join(f", {name}" for name in _besides(policy).values())

@@ -44,6 +44,8 @@ class SubscribedTopic:
     """The name of the message type, such as `LaserScan`."""
     fields: tuple[str, ...]
     """The fields that are read, as the bindings name them: `ranges[:]`."""
+    is_kept: bool = False
+    """Whether its publishers keep their messages for later subscribers (`transient_local`)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,7 +110,7 @@ class Package:
 
 # What cannot be a package -----------------------------------------------------------------------
 
-_TOPIC = re.compile(r"/?[A-Za-z]\w*(?:/[A-Za-z]\w*)*", re.ASCII)
+_TOPIC = re.compile(r"/?[A-Za-z]\w*(?:/[A-Za-z_]\w*)*", re.ASCII)
 
 
 def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
@@ -236,7 +238,11 @@ def _topics(signals: Sequence[Signal]) -> Iterator[SubscribedTopic]:
         kind = ROS_TYPE.fullmatch(_kind(own[0]))
         assert kind is not None, "it is refused"
         fields = dict.fromkeys(str(signal.path).removeprefix(f"{topic}.") for signal in own)
-        yield SubscribedTopic(topic, kind["package"], kind["message"], tuple(fields))
+        names = kind["package"], kind["message"], tuple(fields)
+        is_kept = any(signal.goals is not None for signal in own)
+        yield SubscribedTopic(topic, *names, is_kept=is_kept)
+        if any(signal.pose is not None for signal in own):
+            yield SubscribedTopic(f"{topic}_static", *names, is_kept=True)
 
 
 def _parameters(

@@ -97,6 +97,7 @@ def _values(package: Package) -> dict[str, Any]:
     return {
         "package": package,
         "apart": False,
+        "keeps": any(topic.is_kept for topic in package.topics),
         "version": __version__,
         "dependencies": sorted({*_NEEDED, *package.dependencies}),
         "imports": [
@@ -120,6 +121,10 @@ def _literal(value: float | Sequence[str]) -> str:
 
 def qos(topic: SubscribedTopic) -> str:
     """The QoS of the node's subscription, as Python code."""
+    if topic.is_kept:
+        return "KEPT_ALL"
+    if topic.package == "tf2_msgs":
+        return "100"
     return "qos_profile_sensor_data" if topic.package in _SENSORS else "10"
 
 

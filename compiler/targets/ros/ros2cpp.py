@@ -49,7 +49,27 @@ _TEMPLATES = {
 
 def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
     """F312 and F601 for requirements without a monitor in C, or a ROS node."""
-    return shared.refuse(requirement) or monitor.refuse(requirement) or _of_computed(requirement)
+    return (
+        shared.refuse(requirement)
+        or monitor.refuse(requirement)
+        or _of_computed(requirement)
+        or _of_several_fields(requirement)
+    )
+
+
+def _of_several_fields(requirement: FormalizedRequirement) -> Diagnostic | None:
+    """F601 for signals of frames and of actions, which only the node in Python reads."""
+    at_instant = instant([requirement])
+    for policy in at_instant.policies if at_instant else ():
+        if policy.signal.pose is not None or policy.signal.goals is not None:
+            return diagnostic(
+                "not_judged_live",
+                policy.signal.span or requirement.entry.wording,
+                requirement=requirement.id,
+                what=f"`{policy.signal.name}` is the {policy.signal.origin}",
+                help="emit `ros2-package`, whose node is in Python, or publish the number",
+            )
+    return None
 
 
 def _of_computed(requirement: FormalizedRequirement) -> Diagnostic | None:

@@ -162,7 +162,7 @@ class PropositionCoverage:
             "name": name,
             "expression": _expression(self.declarations, name),
             "signals": {
-                signal: str(signals[signal].path)
+                signal: signals[signal].origin
                 for signal in self.declarations.propositions[name].signals
             },
             "took_both_values": self._took_both(name),
@@ -180,7 +180,7 @@ def _expression(declarations: Declarations, name: str) -> str:
 
 def _bound(signal: Signal) -> str:
     reduced = f"{signal.reduce} of " if signal.reduce else ""
-    return f"{signal.name} = {reduced}{signal.path} {signal.unit_name}".rstrip()
+    return f"{signal.name} = {reduced}{signal.origin} {signal.unit_name}".rstrip()
 
 
 def _counted(tally: PropositionTally) -> str:

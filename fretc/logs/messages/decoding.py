@@ -22,6 +22,7 @@ from fretc.logs.messages.layouts import TopicType, Where
 from fretc.logs.messages.leaves import FieldKind, Leaf, Leaves
 from fretc.logs.signals.signals import Sparse, fields, optional_field
 from fretish.bindings.declarations import short_type
+from fretish.classes.frozen import dataclass
 
 Decode = Callable[[bytes], object]
 """A payload → an object with the message's fields; it may raise any exception."""
@@ -40,6 +41,7 @@ _ROS1_TYPE = re.compile(rf"{_NAME}/{_NAME}")
 _FIELD = re.compile(rf"{_NAME}(/{_NAME})?(\[[0-9]*\])? {_NAME}")
 _CONSTANT = re.compile(rf"{_NAME} [^=]*=")
 _NEXT_TYPE = re.compile(rf"MSG: {_NAME}/{_NAME}")
+_SERVICE_EVENT = re.compile(rf"{_NAME}/srv/{_NAME}_Event")
 _SEPARATOR = re.compile(r"={3,}")
 
 
@@ -58,9 +60,34 @@ class MissingExtra(str):
     """The name of the extra for pip."""
 
 
+@dataclass(frozen=True, slots=True)
+class ServiceEventInfo:
+    """service_msgs/ServiceEventInfo, as far as signals read it."""
+
+    event_type: int
+
+
+@dataclass(frozen=True, slots=True)
+class ServiceEvent:
+    """The first field of a message on `_service_event`; the others differ by service."""
+
+    info: ServiceEventInfo
+
+
+def _service_event(payload: bytes) -> ServiceEvent:
+    """The event of a service, whose type is the first byte of its message.
+
+    rosidl begins each event with it. The definition is not needed: rosbag2 records that of the
+    service in a form of its own, or none.
+    """
+    return ServiceEvent(ServiceEventInfo(_plain(payload)[4]))
+
+
 def decoder(stream: ChannelDefinition) -> Decode | str:
     """The decoder of the messages of a stream, or the reason why there is none."""
     encoding, schema = stream.channel.message_encoding, stream.schema
+    if schema is not None and encoding == "cdr" and _SERVICE_EVENT.fullmatch(schema.name):
+        return _service_event
     if schema is None and encoding != "json":
         return "its messages have no definition"
     try:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fretc.logs.signals.samples import Numbers, Values
-from fretc.logs.signals.signals import FieldError, UnstatedError, field_of, fields
+from fretc.logs.signals.signals import FieldError, UnstatedError, field_of, fields, goal_number
 from fretish.bindings.declarations import Signal
 from fretish.classes.frozen import dataclass
 from fretish.diagnostics.rendering import visible
@@ -50,6 +50,8 @@ def enum_index(signal: Signal, message: object) -> float | str:
     Raises:
         FieldError: the message has no such field, or the field is neither a text nor a number.
     """
+    if signal.goals is not None:
+        return goal_number(signal.goals, message)
     try:
         value = field_of(signal.path, message)
     except UnstatedError:

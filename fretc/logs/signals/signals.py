@@ -26,6 +26,7 @@ from fretish import expressions as e
 from fretish.bindings import amounts
 from fretish.bindings.declarations import (
     Declarations,
+    GoalStatus,
     Path,
     Proposition,
     Reading,
@@ -34,6 +35,7 @@ from fretish.bindings.declarations import (
 )
 from fretish.diagnostics.diagnostic import Diagnostic, did_you_mean
 from fretish.diagnostics.messages import diagnostic
+from monitors.goals import goal_status
 
 RANGE_MIN = "range_min"
 """The field of a range sensor's messages with the least distance that it can measure."""
@@ -99,6 +101,8 @@ def sample(signal: Signal, message: object, *, single: bool = False) -> float:
     Raises:
         FieldError: the message has no such field, or something else than numbers is in it.
     """
+    if signal.goals is not None:
+        return goal_number(signal.goals, message)
     try:
         value = _field(signal, message)
         if isinstance(value, float | int) and signal.valid is None and isfinite(value):
@@ -108,6 +112,27 @@ def sample(signal: Signal, message: object, *, single: bool = False) -> float:
             return _sample(signal, message, values.astype(np.float32) if single else values)
     except UnstatedError:
         return float("nan")
+
+
+def goal_number(goals: GoalStatus, message: object) -> float:
+    """The status of goals in a message: a place in its values, or a truth value; NaN: unknown.
+
+    Raises:
+        FieldError: the message has no statuses of goals.
+    """
+    try:
+        number = goal_status(message, str(goals.choice), goals.statuses, _part)
+    except UnstatedError:
+        return float("nan")
+    except (AttributeError, KeyError, TypeError, ValueError):
+        raise FieldError("its messages list no goals with their statuses") from None
+    return float("nan") if number is None else float(number)
+
+
+def _part(holder: Any, name: str) -> Any:
+    if isinstance(holder, Sparse):
+        return holder.field(name)
+    return holder[name] if isinstance(holder, Mapping) else getattr(holder, name)
 
 
 def _kind(value: float) -> np.dtype[Any]:

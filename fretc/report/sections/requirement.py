@@ -298,7 +298,7 @@ def _signal(signal: Signal) -> SignalView:
     ]
     return SignalView(
         signal.name,
-        str(signal.path),
+        signal.origin,
         signal.type or "any type",
         "word" if signal.values else signal.unit_name or "1",
         "; ".join(filter(None, reading)),

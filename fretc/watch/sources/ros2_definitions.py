@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+import re
+
 from fretc.logs.messages import ros2_types
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
+
+_SERVICE_EVENT = re.compile(r"\w+/srv/\w+_Event", re.ASCII)
+_EVENT = "service_msgs/ServiceEventInfo info\n"
+"""The first field of each event of a service, which is all that is read of it."""
 
 
 def definition(type_: str, digest: str | None) -> str | None:
@@ -13,6 +19,8 @@ def definition(type_: str, digest: str | None) -> str | None:
     Raises:
         ModuleNotFoundError: rosbags is not installed.
     """
+    if _SERVICE_EVENT.fullmatch(type_):
+        return _EVENT
     definitions = ros2_types.definitions(type_)
     if digest is not None:
         return definitions.get(digest)

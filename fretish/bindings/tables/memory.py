@@ -115,6 +115,9 @@ class MemoryTables(Fields):
         source = self._recorded.get(arg.id)
         if source is None:
             return diagnostic("memory_of", place, name=call.name, what="one with an error")
+        if source.pose is not None or source.goals is not None:
+            what = "a pose" if source.pose is not None else "an action"
+            return diagnostic("memory_of", place, name=call.name, what=what)
         if source.values:
             return diagnostic("memory_of", place, name=call.name, what="one of words")
         if call.name == "count" and source.unit_name:

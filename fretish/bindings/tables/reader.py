@@ -18,6 +18,8 @@ from fretish.bindings.tables.clock import ClockTable
 from fretish.bindings.tables.computed import ComputedTables
 from fretish.bindings.tables.coordinates import MapTable
 from fretish.bindings.tables.fields import Fields, Notes
+from fretish.bindings.tables.frames import FrameTables
+from fretish.bindings.tables.goals import GoalTables
 from fretish.bindings.tables.interceptor import InterceptorTables
 from fretish.bindings.tables.labels import LabelTable
 from fretish.bindings.tables.memory import MemoryTables
@@ -76,8 +78,20 @@ class _TablesReader(Fields):
         self._check_keys(tables.data, FIELDS, "the bindings")
         written = self._tables("signal")
         of_signals = SignalTables(tables, notes)
+        of_goals = GoalTables(tables, notes, of_signals.known)
+        others: Mapping[str, SignalTables] = {
+            "frame": FrameTables(tables, notes, of_signals.known),
+            "action": of_goals,
+            "service": of_goals,
+        }
         recorded = {name: table for name, table in written.items() if "value" not in table}
-        signals = self._parts("signal", of_signals.signal, recorded)
+        signals = self._parts(
+            "signal",
+            lambda name, table: next(
+                (reader for key, reader in others.items() if key in table), of_signals
+            ).signal(name, table),
+            recorded,
+        )
         of_memory = MemoryTables(tables, notes, of_signals.known)
         remembering = of_memory.tables_with_memory()
         signals |= self._parts("signal", of_memory.signal, remembering)

@@ -44,9 +44,12 @@ _INVALID = {
 class SignalTables(Fields):
     """Reader of the tables `[signal.NAME]`."""
 
-    def __init__(self, tables: Tables, notes: Notes) -> None:
+    def __init__(
+        self, tables: Tables, notes: Notes, known: dict[str, Signal] | None = None
+    ) -> None:
+        """`known`: the signals that other readers have read, to which this one adds its own."""
         super().__init__(tables, notes)
-        self.known: dict[str, Signal] = {}
+        self.known: dict[str, Signal] = {} if known is None else known
         """All signals with a known unit or with words, even if they have other errors."""
 
     def signal(self, name: str, table: Mapping[str, Any]) -> Signal | None:

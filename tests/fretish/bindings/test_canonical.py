@@ -17,9 +17,13 @@ from fretish.bindings.declarations import (
     REP_117,
     Aggregate,
     Declarations,
+    FramePose,
+    GoalChoice,
+    GoalStatus,
     Memory,
     Modality,
     Path,
+    PoseNumber,
     Reduce,
     Role,
 )
@@ -66,6 +70,8 @@ SIGNAL: dict[str, Any] = {
     "max_age": 5,
     "values": ("a", "b"),
     "memory": Memory("max", "x", 5, None, units.ONE),
+    "pose": FramePose("base_link", "map", PoseNumber.YAW),
+    "goals": GoalStatus("/a", GoalChoice.ANY, ("aborted",)),
 }
 PROPOSITION: dict[str, Any] = {
     "expression": read("x > 2 m"),
