@@ -27,6 +27,12 @@ path = "/m.data"
 values = ["a", "b"]
 [signal.twice]
 value = "2 * speed"
+[signal.x]
+frame = "base_link"
+in = "map"
+path = "x"
+[signal.goal]
+action = "/go"
 """
 
 
@@ -90,6 +96,8 @@ def test_the_window_changes_the_fingerprint_and_its_spelling_does_not() -> None:
         ("max(speed, over = 0 s)", "`over` must be a duration greater than 0"),
         ("rate(twice)", "`rate` needs a recorded signal of numbers, and this is a computed signal"),
         ("rate(mode)", "`rate` needs a recorded signal of numbers, and this is one of words"),
+        ("rate(x)", "`rate` needs a recorded signal of numbers, and this is a pose"),
+        ("rate(goal)", "`rate` needs a recorded signal of numbers, and this is an action"),
         ("rate(-speed)", "`rate` needs a recorded signal of numbers, and this is an expression"),
         ("rate(spede)", "there is no signal `spede`"),
         (
