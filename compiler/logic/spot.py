@@ -186,15 +186,19 @@ def deterministic_buchi(formula: Formula) -> BuchiAutomaton | None:
     """
     spot = _spot()
     names = _names(*atoms(formula))
-    parity = spot.translate(printing.future(_renamed(formula, names)), "parity", "deterministic")
+    text = printing.future(_renamed(formula, names))
+    parity = spot.translate(text, "parity", "deterministic")
     automaton = parity
     if parity.num_sets() > 0:
         buchi = spot.rabin_to_buchi_if_realizable(parity)
         if buchi is None:
             return None
+        # Spot 2.13 keeps the property of the parity automaton, and `sbacc` then does nothing.
+        buchi.prop_state_acc(spot.trival_maybe())
         automaton = spot.sbacc(buchi)
     automaton.purge_dead_states()
     assert spot.is_deterministic(automaton)
+    assert spot.are_equivalent(automaton, spot.formula(text)), "the automaton is another one"
     own = {name: Atom(atom) for atom, name in names.items()}
     first = automaton.get_init_state_number()
     numbers = {first: 0}

@@ -29,8 +29,8 @@ def mistake(text: str) -> Diagnostic:
 
 FORMULAS = (
     "G (a -> F b)", "a U b & b", "!a U b", "a & b | a -> (a <-> b)", "a -> b -> a",
-    "F G a -> G F b", "a xor b", "(a U b) U a", "a W b", "!X a R b", "F[1,3] a & G[0,2] b", "X X a", "true U a",
-    "a <-> b <-> a", "a W (b R X a)", "G (a && b || a)",
+    "F G a -> G F b", "a xor b", "(a U b) U a", "a W b", "!X a R b", "F[1,3] a & G[0,2] b", "X X a",
+    "true U a",    "a <-> b <-> a", "a W (b R X a)", "G (a && b || a)",
 )  # fmt: skip
 
 
