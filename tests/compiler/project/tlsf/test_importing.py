@@ -168,7 +168,10 @@ def test_imported_specifications_are_realizable_just_where_spot_says() -> None:
             [requirement(f"A{number}", each) for number, each in enumerate(assumed)],
             AnalysisOptions(repairs=False),
         )
-        assert found.verdict is not RealizabilityVerdict.NOT_CHECKED
+        if found.verdict is RealizabilityVerdict.NOT_CHECKED:  # Spot's game knows no `preBool`.
+            assert "formula:" in imported.artifacts[0].text
+            assert "preBool" in imported.artifacts[0].text
+            continue
         is_realizable = found.verdict is RealizabilityVerdict.REALIZABLE
         assert is_realizable is synthesized(specification), text
         verdicts.add(is_realizable)
