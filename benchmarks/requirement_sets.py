@@ -4,6 +4,8 @@ Each line is printed with OxiDD and with BuDDy; `--one` measures the engine of `
 `--exports FILE...` analyzes FRET's exports as their users do, without an edit.
 `--generated` answers sets that are generated as industry writes them.
 `--tlsf FILE...` compares specifications in TLSF with the status that they state.
+`--syntcomp FOLDER` does so for the hundred files of `syntcomp.txt`, in a clone of
+github.com/SYNTCOMP/benchmarks.
 """
 
 from __future__ import annotations
@@ -270,6 +272,10 @@ if __name__ == "__main__":
         generated()
     elif "--tlsf" in sys.argv:
         specifications(sys.argv[sys.argv.index("--tlsf") + 1 :])
+    elif "--syntcomp" in sys.argv:
+        clone = Path(sys.argv[sys.argv.index("--syntcomp") + 1])
+        names = Path(__file__).with_name("syntcomp.txt").read_text("utf-8").split()
+        specifications([str(clone / name) for name in names])
     elif "--one" in sys.argv:
         against_spot()
         hard()

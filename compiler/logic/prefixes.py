@@ -47,8 +47,17 @@ def _until_last(formula: f.Formula) -> f.Formula:
             return f.until(f.not_(f.LAST), _until_last(arg))
         case f.Globally(arg, f.EVER):
             return f.release(f.LAST, _until_last(arg))
-        case f.Eventually() | f.Globally():
-            return _until_last(_steps(formula))
+        case f.Eventually(arg, f.Interval(0, int(hi))):
+            ends = f.eventually(f.LAST, f.Interval(0, hi - 1)) if hi else f.FALSE
+            return f.or_(ends, f.eventually(_until_last(arg), formula.ahead))
+        case f.Globally(arg, f.Interval(0, int())):
+            kept = _until_last(arg)
+            return f.or_(f.globally(kept, formula.ahead), f.release(f.LAST, kept))
+        case f.Eventually(arg, f.Interval(lo, hi)) | f.Globally(arg, f.Interval(lo, hi)):
+            ahead = f.Interval(0, None if hi is None else hi - lo)
+            later = f.eventually if isinstance(formula, f.Eventually) else f.globally
+            ends = f.eventually(f.LAST, f.Interval(0, lo - 1))
+            return f.or_(ends, f.eventually(_until_last(later(arg, ahead)), f.Interval(lo, lo)))
         case _:
             return f.rebuild(formula, _until_last)
 

@@ -26,6 +26,7 @@ from compiler.logic.formula import (
     atoms,
     children,
     longest_bound,
+    next_,
     not_,
     or_,
     rebuild,
@@ -186,15 +187,19 @@ def deterministic_buchi(formula: Formula) -> BuchiAutomaton | None:
     """
     spot = _spot()
     names = _names(*atoms(formula))
-    parity = spot.translate(printing.future(_renamed(formula, names)), "parity", "deterministic")
+    text = printing.future(_renamed(formula, names))
+    parity = spot.translate(text, "parity", "deterministic")
     automaton = parity
     if parity.num_sets() > 0:
         buchi = spot.rabin_to_buchi_if_realizable(parity)
         if buchi is None:
             return None
+        # Spot 2.13 keeps the property of the parity automaton, and `sbacc` then does nothing.
+        buchi.prop_state_acc(spot.trival_maybe())
         automaton = spot.sbacc(buchi)
     automaton.purge_dead_states()
     assert spot.is_deterministic(automaton)
+    assert spot.are_equivalent(automaton, spot.formula(text)), "the automaton is another one"
     own = {name: Atom(atom) for atom, name in names.items()}
     first = automaton.get_init_state_number()
     numbers = {first: 0}
@@ -233,6 +238,23 @@ def _condition(condition: Any, own: Mapping[str, Formula]) -> Formula:
         case kind:
             assert kind == spot.op_Or
             return or_(*parts)
+
+
+@with_recursion_limit
+def is_bad_prefix(formula: Formula, prefix: Sequence[Mapping[str, bool]]) -> bool:
+    """Whether no run that begins with these valuations satisfies a formula of the future.
+
+    Args:
+        formula: the formula.
+        prefix: the value of each of its atoms at the first ticks.
+    """
+    begun: Formula = TRUE
+    for row in reversed(prefix):
+        literals = (Atom(name) if value else not_(Atom(name)) for name, value in row.items())
+        begun = and_(*literals, next_(begun))
+    names = _names(*atoms(formula), *(name for row in prefix for name in row))
+    text = printing.future(_renamed(and_(formula, begun), names))
+    return bool(_spot().translate(text).is_empty())
 
 
 @with_recursion_limit

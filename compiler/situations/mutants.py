@@ -17,6 +17,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.situations.changes import changes, opposite
 from fretish import expressions as e
 from fretish import syntax as s
+from fretish.checking import is_formula
 from fretish.classes.frozen import dataclass
 from fretish.clock import in_unit
 from fretish.diagnostics.source import Source
@@ -67,8 +68,10 @@ class _Draft:
 def mutants(requirement: FormalizedRequirement) -> tuple[Mutant, ...]:
     """The mutants of a requirement; their sentences differ from each other and from the original.
 
-    Sentences that cannot be formalized are left out.
+    Sentences that cannot be formalized are left out. A formula has no mutants.
     """
+    if is_formula(requirement.sentence):
+        return ()
     seen = {canonical(requirement.written)}
     by_key: dict[str, Mutant] = {}
     for draft in _drafts(requirement):

@@ -24,7 +24,7 @@ from fretish import syntax as s
 from fretish.bindings.comparisons import is_mixed
 from fretish.bindings.declarations import Declarations, Role, Variable
 from fretish.bindings.definitions import expanded
-from fretish.checking import conditions, has_units
+from fretish.checking import conditions, has_units, is_formula
 from fretish.clock import SYMBOLS, duration_text
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source, Span
@@ -59,6 +59,10 @@ def emit(
 def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
     """F601: FRET has no units and converts nothing, and reads the kind in the id."""
     entry = requirement.entry
+    if is_formula(requirement.sentence):
+        return not_expressible(
+            "FRET", requirement, "a formula", "write it as sentences, or export `ltl`"
+        )
     if entry.is_assumption is not is_assumption(entry.fret.get("reqid", entry.id)):
         kind = "an assumption without" if entry.is_assumption else "a requirement with"
         return not_expressible(

@@ -49,9 +49,9 @@ def formula_game(
 
 def _is_propositional(requirement: FormalizedRequirement, roles: Roles) -> bool:
     """Whether each atom is a variable with a role, and the formula is short enough for Spot."""
-    names = {*requirement.propositions}
+    names = {*f.atoms(requirement.ft_infinite)}
     return (
-        names == {*requirement.variables}
+        names <= {*requirement.variables}
         and not all_comparisons(requirement)
         and all(roles.get(name) in (Role.INPUT, Role.OUTPUT) for name in names)
         and (is_formula(requirement.sentence) or not temporal_predicate(requirement.sentence))

@@ -23,6 +23,7 @@ from fretc.play.starts import MOST, Start
 from fretc.report.model.phrases import joined, times, visible
 from fretc.report.page.html import Inset, hash_source
 from fretc.testing.suite import SCHEMA, Tested
+from fretish.checking import is_formula
 from fretish.diagnostics import status_symbols as signs
 from fretish.printer import expression
 from fretish.printer import sentence as printed
@@ -198,7 +199,9 @@ def _requirement(
 ) -> dict[str, Any]:
     demand = obligation(requirement.sentence, requirement.ticks or 0).demand
     formula = boolean(requirement.sentence.response, Uninterpreted().alone())
-    known = all(name in propositions for name in f.atoms(formula))
+    known = not is_formula(requirement.sentence) and all(
+        name in propositions for name in f.atoms(formula)
+    )
     return {
         "label": visible(requirement.id),
         "title": visible(requirement.entry.title),

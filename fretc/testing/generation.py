@@ -25,6 +25,7 @@ from fretc.testing.suite import (
     unused,
 )
 from fretc.testing.words import Expected, expected, undecided
+from fretish.checking import is_formula
 from fretish.classes.frozen import dataclass
 from fretish.printer import sentence as printed
 from fretish.reading.recursion import with_recursion_limit
@@ -54,6 +55,8 @@ def batch(
             its tests satisfy them.
         seconds: CPU seconds.
     """
+    if is_formula(requirement.sentence):
+        return lost(requirement, "it is a formula, and tests are made for sentences")
     try:
         return _Generation(FoundRuns(requirement, others, seconds)).batch()
     except UnsupportedError as error:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import PurePosixPath
 from typing import Any
 
@@ -12,7 +12,7 @@ from compiler.files.artifact import Artifact
 from compiler.logic import formula as f
 from compiler.logic.identifiers import legal_names
 from compiler.project.fret_import import ImportResult
-from compiler.project.tlsf.patterns import sentences
+from compiler.project.tlsf.patterns import as_formula, sentences
 from compiler.project.tlsf.specification import (
     ALWAYS,
     OF_ENVIRONMENT,
@@ -29,6 +29,8 @@ from fretish.parser import parse
 from fretish.reading.recursion import with_recursion_limit
 
 _SEMANTICS = frozenset({"Mealy", "Mealy,Strict"})
+_OPERATORS = frozenset("XFGURW")
+"""Names that a formula reads as operators."""
 _LONGEST = 60
 """Characters of a formula in a message."""
 
@@ -37,7 +39,7 @@ _LONGEST = 60
 def read_specification(source: Source) -> ImportResult:
     """The requirements of a specification, or every reason why it is not imported.
 
-    Each formula becomes sentences of the same meaning; F622 reports a formula without any.
+    Each formula becomes sentences of the same meaning, or stays a formula if there are none.
     """
     specification = read(source)
     if isinstance(specification, Diagnostic):
@@ -52,17 +54,14 @@ def read_specification(source: Source) -> ImportResult:
         return ImportResult((), (mistake,))
     names = _names(specification)
     entries: list[tuple[dict[str, Any], str]] = []
-    mistakes: list[Diagnostic] = []
+    kept: list[SectionFormula] = []
     for number, part in enumerate(specification.formulas, 1):
-        texts = sentences(
-            f.globally(part.formula) if part.section in ALWAYS else part.formula, names
-        )
+        formula = f.globally(part.formula) if part.section in ALWAYS else part.formula
+        texts = sentences(formula, names)
         if texts is None:
-            mistakes.append(diagnostic("no_pattern", part.span, formula=_short(part)))
-        else:
-            entries.extend(_entries(number, part, texts))
-    if mistakes:
-        return ImportResult((), tuple(mistakes))
+            kept.append(part)
+            texts = (as_formula(formula, names),)
+        entries.extend(_entries(number, part, texts))
     outputs = set(specification.outputs)
     doubts = [
         diagnostic("assumption_reads_outputs", part.span)
@@ -72,7 +71,17 @@ def read_specification(source: Source) -> ImportResult:
     assumed = sum("kind" in header for header, _ in entries)
     count = len(specification.inputs) + len(specification.outputs)
     files = (_requirements(entries), _bindings(specification, names))
-    return ImportResult(files, tuple(doubts[:1]), len(entries), count, assumed)
+    return ImportResult(
+        files, (*_kept_as_formulas(kept), *doubts[:1]), len(entries), count, assumed
+    )
+
+
+def _kept_as_formulas(parts: Sequence[SectionFormula]) -> Iterator[Diagnostic]:
+    """F622 for the first formula without a sentence, with the number of others."""
+    if parts:
+        first, *more = parts
+        others = f", nor {len(more)} other formulas" if more else ""
+        yield diagnostic("no_pattern", first.span, formula=_short(first), others=others)
 
 
 def _short(part: SectionFormula) -> str:
@@ -82,7 +91,7 @@ def _short(part: SectionFormula) -> str:
 
 def _names(specification: Specification) -> Mapping[str, str]:
     """Each signal and its text in a sentence: key words are quoted, other characters replaced."""
-    legal = legal_names((*specification.inputs, *specification.outputs), frozenset())
+    legal = legal_names((*specification.inputs, *specification.outputs), _OPERATORS)
     return {name: _written(text) for name, text in legal.items()}
 
 

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping
 from itertools import chain
 
 from compiler.logic import formula as f
+from compiler.logic.printing import Dialect, text
 from fretish.classes.frozen import dataclass
 
 COMPONENT = "system"
@@ -33,6 +34,17 @@ def sentences(formula: f.Formula, names: Mapping[str, str]) -> tuple[str, ...] |
         return tuple(chain.from_iterable(map(_Patterns(names).at_first, _conjuncts(formula))))
     except _NoPatternError:
         return None
+
+
+def as_formula(formula: f.Formula, names: Mapping[str, str]) -> str:
+    """The text of a requirement that is a formula and no sentence of FRETish.
+
+    Args:
+        formula: a formula over the first tick and all later ones.
+        names: the text of each atom.
+    """
+    dialect = Dialect("requirement", constants=("false", "true"), atom=names.__getitem__)
+    return f"the {COMPONENT} shall satisfy formula: {text(formula, dialect)}"
 
 
 def _conjuncts(formula: f.Formula) -> Iterator[f.Formula]:

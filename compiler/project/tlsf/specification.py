@@ -51,12 +51,19 @@ _LEVELS: Sequence[tuple[str, Callable[[f.Formula, f.Formula], f.Formula], bool]]
     ("R", f.release, False),
     ("U", f.until, True),
     ("W", _weak_until, True),
-    ("<->", f.iff, True),
     ("->", f.implies, True),
     ("||", f.or_, False),
     ("&&", f.and_, False),
 )
-"""Binary operators, loosest first: symbol, constructor, whether it groups to the right."""
+"""Binary operators, loosest first: symbol, constructor, whether it groups to the right.
+
+`<->` stands at the level of `->`, and the two group to the right: `a -> b <-> c` is
+`a -> (b <-> c)`.
+"""
+_IMPLICATIONS: Mapping[str, Callable[[f.Formula, f.Formula], f.Formula]] = {
+    "->": f.implies,
+    "<->": f.iff,
+}
 _MOST_NESTED = 400
 
 
@@ -229,6 +236,8 @@ class _Reader:
         if level == len(_LEVELS):
             return self._unary(known)
         symbol, build, is_right = _LEVELS[level]
+        if symbol == "->":
+            return self._implied(level, known)
         parts = [self._formula(level + 1, known)]
         while _WORDS.get(self._next.text, self._next.text) == symbol:
             self._take()
@@ -243,6 +252,18 @@ class _Reader:
         result, *rest = parts
         for each in rest:
             result = build(result, each)
+        return result
+
+    def _implied(self, level: int, known: set[str]) -> f.Formula:
+        """Operands of `->` and `<->`."""
+        operands, builders = [self._formula(level + 1, known)], []
+        while (symbol := _WORDS.get(self._next.text, self._next.text)) in _IMPLICATIONS:
+            self._take()
+            builders.append(_IMPLICATIONS[symbol])
+            operands.append(self._formula(level + 1, known))
+        result = operands.pop()
+        while builders:
+            result = builders.pop()(operands.pop(), result)
         return result
 
     def _unary(self, known: set[str]) -> f.Formula:

@@ -13,6 +13,7 @@ from compiler.logic import formula as f
 from compiler.logic.definition import holds_on_lasso
 from compiler.logic.diagrams import decision_diagrams as bdd
 from compiler.logic.evaluation import evaluate
+from compiler.logic.spot import is_bad_prefix
 from fretc.analysis.arena.alphabet import Alphabet
 from fretc.analysis.arena.transition import Transition
 from fretc.analysis.games.game import Letter
@@ -101,16 +102,13 @@ def _is_formula_broken(
 ) -> bool:
     """Whether the trace violates a formula, by its definition on endless traces.
 
-    A prefix violates it if its operators show that (`compiler.logic.prefixes`).
+    A prefix violates it if no run that begins with it satisfies the formula.
     """
     letters = [letter for letter, count in runs for _ in range(count)]
-    if loop is not None:
-        valuations = _valuations(requirement, alphabet, letters)
-        return not holds_on_lasso(requirement.ft_infinite, valuations[:loop], valuations[loop:])
-    if requirement.watch.missing:
-        return False
-    (violation,) = _watched((requirement.watch.violation,), alphabet, runs)
-    return bool(violation >> len(letters) - 1 & 1)
+    valuations = _valuations(requirement, alphabet, letters)
+    if loop is None:
+        return is_bad_prefix(requirement.ft_infinite, valuations)
+    return not holds_on_lasso(requirement.ft_infinite, valuations[:loop], valuations[loop:])
 
 
 def _valuations(

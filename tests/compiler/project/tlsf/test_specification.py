@@ -23,6 +23,8 @@ def specification(formula: str, section: str = "GUARANTEE") -> Specification:
     [
         ("!a && b || x -> y", "((!a & b) | x) -> y"),
         ("a -> b -> x", "a -> (b -> x)"),
+        ("a -> b <-> x", "a -> (b <-> x)"),
+        ("a <-> b -> x", "a <-> (b -> x)"),
         ("a <-> b W x", "(a <-> b) W x"),
         ("a W b W x", "a W (b W x)"),
         ("a W b U x", "(a W b) U x"),
@@ -32,7 +34,7 @@ def specification(formula: str, section: str = "GUARANTEE") -> Specification:
         ("a R b R x", "(a R b) R x"),
         ("X X a && F b", "(X X a) & (F b)"),
         ("G F a -> G F b", "(G F a) -> (G F b)"),
-        ("a AND NOT b OR x IMPLIES y EQUIV true", "((((a & !b) | x) -> y) <-> 1)"),
+        ("a AND NOT b OR x IMPLIES y EQUIV true", "(((a & !b) | x) -> (y <-> 1))"),
         ("G (a /* one */ -> // two\n X b)", "G (a -> X b)"),
     ],
 )  # fmt: skip

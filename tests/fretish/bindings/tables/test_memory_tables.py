@@ -117,7 +117,7 @@ def test_a_mistake_names_the_place_and_the_remedy() -> None:
     _, (wrong,) = read('[signal.v]\nvalue = "max(speed, over = 2 m)"\n')
     assert render(wrong) == (
         "F356 `over` must be a duration greater than 0\n"
-        "  --> bindings.toml:17:28\n"
+        "  --> bindings.toml:23:28\n"
         '   | value = "max(speed, over = 2 m)"\n'
         "   |                            ^^^\n"
         "help: state it as in `max(x, over = 500 ms)`"
