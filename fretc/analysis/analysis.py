@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from functools import partial
+from functools import cache, partial
 from typing import TypeVar
 
 from compiler.files.build_id import __version__
@@ -11,6 +11,7 @@ from compiler.files.records import replace
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import all_comparisons, temporal_predicate
 from fretc.analysis import implications as of_runs
+from fretc.analysis.answers import fingerprint
 from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.arena.variables import UnsupportedError
@@ -121,11 +122,11 @@ def jobs(
 ) -> tuple[Job, ...]:
     """All questions, the most important ones first."""
     components = [
-        _Setting(each, roles, assumptions, options)
+        _Setting("component", each, roles, assumptions, options)
         for each in by_outputs(requirements, assumptions, roles)
     ]
     groups = [
-        _Setting(each, roles, assumptions, options)
+        _Setting("group", each, roles, assumptions, options)
         for each in by_variables(requirements, assumptions, roles)
     ]
     return (
@@ -159,7 +160,21 @@ def _promises(
                         "what follows from the assumptions", f"no run satisfies {ids}"
                     )
 
-    return Job(title, ask, partial(OpenQuestion, title))
+    problem = cache(partial(_fingerprint, "assumptions", (), roles, assumptions, options))
+    return Job(title, ask, partial(OpenQuestion, title), problem)
+
+
+def _fingerprint(
+    kind: str,
+    requirements: Sequence[FormalizedRequirement],
+    roles: Roles,
+    assumptions: Sequence[FormalizedRequirement],
+    options: AnalysisOptions,
+) -> str:
+    """Fingerprint of a problem with the assumptions that concern it, or of assumptions alone."""
+    near = about(requirements, assumptions, roles) if requirements else assumptions
+    choices = (options.seconds, options.as_fret, options.repairs, bool(assumptions))
+    return fingerprint(kind, requirements, near, roles, choices)
 
 
 def controllers(
@@ -171,7 +186,7 @@ def controllers(
 ) -> tuple[Job, ...]:
     """Jobs that compute a controller of each realizable component in the given form."""
     return tuple(
-        _Setting(each, roles, assumptions, options).controller(number, form)
+        _Setting("component", each, roles, assumptions, options).controller(number, form)
         for number, each in enumerate(by_outputs(requirements, assumptions, roles), 1)
     )
 
@@ -181,11 +196,15 @@ class _Setting:
 
     def __init__(
         self,
+        kind: str,
         requirements: Sequence[FormalizedRequirement],
         roles: Roles,
         assumptions: Sequence[FormalizedRequirement],
         options: AnalysisOptions,
     ) -> None:
+        self._problem = cache(
+            partial(_fingerprint, kind, requirements, roles, assumptions, options)
+        )
         self._rules, self._roles, self._assumptions = requirements, roles, assumptions
         self._options = options
         ids = [requirement.id for requirement in requirements]
@@ -218,7 +237,8 @@ class _Setting:
                 found = not_checked(str(error))
             yield self._by_formulas(found)
 
-        return Job(f"can {self._name} be satisfied together?", ask, not_checked)
+        title = f"can {self._name} be satisfied together?"
+        return Job(title, ask, not_checked, self._problem)
 
     def _by_formulas(self, found: Component) -> Component:
         """A component that is not checked, decided by the game of its formulas if it has any."""
@@ -255,7 +275,7 @@ class _Setting:
             else:
                 yield from self._answers(title, of_runs.consistency)
 
-        return Job(title, ask, partial(OpenQuestion, title))
+        return self._job(title, ask)
 
     def conflicts(self) -> Job:
         """Job: the minimal conflicts of a component that is unrealizable or undecided."""
@@ -272,7 +292,7 @@ class _Setting:
             else:
                 yield from self._answers(title, conflicts)
 
-        return Job(title, ask, partial(OpenQuestion, title))
+        return self._job(title, ask)
 
     def repairs(self) -> Job:
         """Job: changes that would resolve the conflicts of a component."""
@@ -287,7 +307,7 @@ class _Setting:
             if mine:
                 yield from self._answers(title, lambda there, budget: repairs(there, mine, budget))
 
-        return Job(title, ask, partial(OpenQuestion, title))
+        return self._job(title, ask)
 
     def controller(self, number: int, form: ControllerFormat) -> Job:
         """Job: a controller of a realizable component."""
@@ -301,9 +321,10 @@ class _Setting:
     def job(self, title: str, question: Question) -> Job:
         """Job that asks one question about a group."""
         title = title.format(self._name)
-        return Job(
-            title, lambda known: self._answers(title, question), partial(OpenQuestion, title)
-        )
+        return self._job(title, lambda known: self._answers(title, question))
+
+    def _job(self, title: str, ask: Callable[[Sequence[Finding]], Iterator[Finding]]) -> Job:
+        return Job(title, ask, partial(OpenQuestion, title), self._problem)
 
     def _answers(self, title: str, question: Question) -> Iterator[Finding]:
         budget = Budget(self._options.seconds)

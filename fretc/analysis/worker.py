@@ -42,28 +42,46 @@ def findings(jobs: Sequence[Job[F]], progress: Callable[[str], None]) -> Iterato
         progress: called with the title of each job before it starts.
 
     Raises:
-        Stopped: on Ctrl-C, after the findings of the remaining jobs.
+        Interrupted: on Ctrl-C, after the findings of the remaining jobs.
+    """
+    for _, finding in answers(jobs, progress):
+        if finding is not None:
+            yield finding
+
+
+def answers(
+    jobs: Sequence[Job[F]], progress: Callable[[str], None], known: Sequence[F] = ()
+) -> Iterator[tuple[int, F | None]]:
+    """Index of a job with each of its findings, and with None if it has answered to the end.
+
+    Args:
+        jobs: jobs in order.
+        progress: called with the title of each job before it starts.
+        known: earlier findings, which the jobs may read.
+
+    Raises:
+        Interrupted: on Ctrl-C, after the findings of the remaining jobs.
     """
     if not FORKS:
-        yield from _findings_here(jobs, progress)
+        yield from _answers_here(jobs, progress, known)
         return
-    earlier: list[F] = []
+    earlier = [*known]
     with _interruption() as is_stopped:
         number = 0
         while number < len(jobs) and not is_stopped():
-            process, answers = _started(jobs[number:], earlier)
+            process, messages = _started(jobs[number:], earlier)
             is_full = False
             progress(jobs[number].title)
             try:
                 while True:
-                    finding = _next(process, answers, is_stopped)
+                    finding = _next(process, messages, is_stopped)
                     if is_full := isinstance(finding, MemoryError):
                         break
                     if isinstance(finding, Exception):
                         raise finding
+                    yield number, finding
                     if finding is not None:
                         earlier.append(finding)
-                        yield finding
                         continue
                     number += 1
                     if number < len(jobs):
@@ -73,15 +91,15 @@ def findings(jobs: Sequence[Job[F]], progress: Callable[[str], None]) -> Iterato
             finally:
                 process.kill()
                 process.join()
-                answers.close()
+                messages.close()
             if number < len(jobs) and not is_stopped():
                 job, status = jobs[number], process.exitcode or 0
                 earlier.append(job.out_of_memory(_LIMIT) if is_full else job.lost(_ending(status)))
-                yield earlier[-1]
+                yield number, earlier[-1]
                 number += 1
         if is_stopped():
-            for job in jobs[number:]:
-                yield job.lost("stopped by Ctrl-C")
+            for rest in range(number, len(jobs)):
+                yield rest, jobs[rest].lost(_STOPPED)
             raise Interrupted
 
 
@@ -90,32 +108,38 @@ def missing_limits() -> tuple[Diagnostic, ...]:
     return () if FORKS else (diagnostic("no_forked_process"),)
 
 
-def _findings_here(jobs: Sequence[Job[F]], progress: Callable[[str], None]) -> Iterator[F]:
+def _answers_here(
+    jobs: Sequence[Job[F]], progress: Callable[[str], None], known: Sequence[F]
+) -> Iterator[tuple[int, F | None]]:
     """The same in this process: Ctrl-C interrupts a question, and nothing limits its memory."""
-    earlier: list[F] = []
+    earlier = [*known]
     for number, job in enumerate(jobs):
         progress(job.title)
         try:
             for finding in with_recursion_limit(job.ask)(earlier):
                 earlier.append(finding)
-                yield finding
+                yield number, finding
+            yield number, None
         except MemoryError:
             earlier.append(job.out_of_memory())
-            yield earlier[-1]
+            yield number, earlier[-1]
         except KeyboardInterrupt:
-            for rest in jobs[number:]:
-                yield rest.lost("stopped by Ctrl-C")
+            for rest in range(number, len(jobs)):
+                yield rest, jobs[rest].lost(_STOPPED)
             raise Interrupted from None
+
+
+_STOPPED = "stopped by Ctrl-C"
 
 
 def finished(jobs: Sequence[Job[F]], progress: Callable[[str], None]) -> tuple[list[F], bool]:
     """The findings of the jobs, and whether Ctrl-C has stopped them."""
-    answers: list[F] = []
+    known: list[F] = []
     try:
-        answers.extend(findings(jobs, progress))
+        known.extend(findings(jobs, progress))
     except Interrupted:
-        return answers, True
-    return answers, False
+        return known, True
+    return known, False
 
 
 @contextmanager

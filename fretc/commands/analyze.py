@@ -33,7 +33,8 @@ from fretc.terminal.output import (
     print_status,
     write_outputs,
 )
-from fretc.terminal.progress import print_activity
+from fretc.terminal.progress import print_activity, progress
+from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.messages import diagnostic
 
 if TYPE_CHECKING:
@@ -42,6 +43,7 @@ if TYPE_CHECKING:
     from compiler.files.artifact import Artifact
     from compiler.formalization.formalized import FormalizedRequirement
     from fretc.analysis.analysis import AnalysisOptions
+    from fretc.analysis.answers import AnswerFile
     from fretc.analysis.arena.systems import Systems
     from fretc.analysis.findings import Analysis
 
@@ -121,7 +123,7 @@ def analyze(
     if examined.mistakes:
         fail_at_end()
     options = AnalysisOptions(seconds, as_fret)
-    analysis, stopped = asked(formalized, assumed, examined, options)
+    analysis, stopped = asked(formalized, assumed, examined, options, _answer_file(output))
     evidence = f"{to_json(plain(document(formalized, assumed, analysis, as_fret=as_fret)))}\n"
     if emitted is not None and emit_to == "-":
         pass  # Standard output then holds the controller.
@@ -142,15 +144,36 @@ def analyze(
     raise SystemExit(EXIT_INTERRUPTED if stopped else _status(analysis))
 
 
+def _answer_file(output: str) -> AnswerFile | None:
+    """The file of answers beside the analysis; None: there is none, and every question is asked."""
+    from compiler.files.user_key import user_key
+    from fretc.analysis.answers import SUFFIX, AnswerFile
+
+    key = user_key() if output != "-" else None
+    if isinstance(key, Diagnostic):
+        print_diagnostics([key])
+    return AnswerFile(Path(output).with_suffix(SUFFIX), key) if isinstance(key, bytes) else None
+
+
 def asked(
     requirements: Sequence[FormalizedRequirement],
     assumed: Sequence[FormalizedRequirement],
     examined: Systems,
     options: AnalysisOptions,
+    file: AnswerFile | None = None,
 ) -> tuple[Analysis, bool]:
-    """The analysis of the requirements, and whether Ctrl-C has stopped it."""
+    """The analysis of the requirements, and whether Ctrl-C has stopped it.
+
+    Args:
+        requirements: the requirements of all systems.
+        assumed: the assumptions.
+        examined: the systems.
+        options: time limits and other choices.
+        file: answers of earlier analyses, and then of this one; None: every question is asked.
+    """
     from fretc.analysis.analysis import assembled, jobs
-    from fretc.analysis.worker import finished, missing_limits
+    from fretc.analysis.answers import KeptAnswers, answers
+    from fretc.analysis.worker import missing_limits
 
     print_diagnostics(missing_limits())
     work = [
@@ -158,8 +181,18 @@ def asked(
         for system in examined.every
         for job in jobs(system.requirements, system.roles, system.assumptions, options)
     ]
-    answers, stopped = finished(work, print_activity)
-    return assembled(requirements, examined.roles, assumed, options, answers), stopped
+    kept = KeptAnswers() if file is None else file.read()
+    missing = len(work) - len(kept.of(work))
+    if missing < len(work):
+        print_status(f"{len(work) - missing} of {len(work)} questions were answered before")
+    with progress(missing, "analyzing") as show:
+        findings, known, stopped = answers(
+            work, kept, lambda number, title: show(number, f"{number}/{missing} {title}")
+        )
+    mistake = None if file is None or known == kept else file.write(known)
+    if mistake is not None:
+        print_diagnostics([mistake])
+    return assembled(requirements, examined.roles, assumed, options, findings), stopped
 
 
 def _emit_specifications(examined: Systems, options: AnalysisOptions, output: str) -> None:

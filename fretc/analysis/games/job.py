@@ -20,6 +20,9 @@ class Job(Generic[F]):
     """Function of the earlier findings that yields the answer."""
     lost: Callable[[str], F]
     """Function of a reason that gives the finding if there is no answer."""
+    problem: Callable[[], str] | None = None
+    """The fingerprint of all that the answer depends on; None: it is not kept. Questions with the
+    same fingerprint share what they compute."""
 
     def out_of_memory(self, limit: str = "there is") -> F:
         """The finding if the memory, or the table of decision diagrams, is full."""
