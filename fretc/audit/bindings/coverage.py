@@ -180,7 +180,9 @@ def _expression(declarations: Declarations, name: str) -> str:
 
 def _bound(signal: Signal) -> str:
     reduced = f"{signal.reduce} of " if signal.reduce else ""
-    return f"{signal.name} = {reduced}{signal.origin} {signal.unit_name}".rstrip()
+    field = f"{reduced}{signal.origin}"
+    value = field if signal.memory is None else f"{signal.memory.text} of {field},"
+    return f"{signal.name} = {value} {signal.unit_name}".rstrip(" ,")
 
 
 def _counted(tally: PropositionTally) -> str:

@@ -21,13 +21,16 @@ if TYPE_CHECKING:
 
 MOST = 100
 """The most intervals of one result."""
-UnknownCause = Literal["", "no sample yet", "too old", "lost", "late", "no measurement"]
+UnknownCause = Literal[
+    "", "no sample yet", "too old", "lost", "late", "no measurement", "no full window"
+]
 _WORDS: Mapping[str, str] = {
     "no sample yet": "`{}` had no sample yet",
     "too old": "the last sample of `{}` was too old",
     "lost": "messages of `{}` may have been lost",
     "late": "messages of `{}` came too late",
     "no measurement": "`{}` was no measurement",
+    "no full window": "what `{}` looks back on was not fully known",
 }
 
 
@@ -123,4 +126,4 @@ def _causes(
         elif signal.max_age is not None and max(ages) > signal.max_age:
             yield name, "too old"
         elif np.isnan(samples.values[begin:end]).any():
-            yield name, "no measurement"
+            yield name, "no measurement" if signal.memory is None else "no full window"
