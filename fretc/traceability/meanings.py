@@ -176,6 +176,8 @@ def _fields(record: Record) -> dict[str, Any]:
 
 _WORDS = ("text", "role", "kind")
 _OUTLINE = ("footprint", "sensor")
+_POSE = ("frame", "in", "path")
+_GOALS = ("goal", "status")
 _FIRST = {"expr", "value"}
 """Fields that are listed first."""
 _CLOCK = ("tick", "time", "end", "phase", "rounding")
@@ -254,6 +256,8 @@ def _signal(name: str, declarations: Declarations | None) -> Mapping[str, Any]:
     meanings = canonical.signal_fields(known)
     outline = meanings.pop("outline") or (None, None)
     own = {"agg": str(known.aggregate), "role": str(known.role)}
+    for fields, kind in ((_POSE, "pose"), (_GOALS, "goals")):
+        own |= dict(zip(fields, meanings.pop(kind, ()), strict=False))
     return {**meanings, **dict(zip(_OUTLINE, outline, strict=True)), **own}
 
 

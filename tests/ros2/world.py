@@ -29,7 +29,7 @@ SYSTEM_START = 1_700_000_000 * rclpy.SECOND
 """System time when a world begins."""
 PACKAGES = (
     "builtin_interfaces diagnostic_msgs geometry_msgs nav_msgs rcl_interfaces rosgraph_msgs "
-    "sensor_msgs std_msgs lifecycle_msgs"
+    "sensor_msgs std_msgs lifecycle_msgs action_msgs tf2_msgs"
 ).split()
 
 

@@ -97,7 +97,7 @@ def _states(requirement: FormalizedRequirement) -> dict[str, Any]:
 
 
 def _signals(requirement: FormalizedRequirement) -> list[Signal]:
-    """The numeric signals that the requirement reads, without arrays."""
+    """The signals that the requirement reads from a single number of a message."""
     declared = requirement.declarations
     if declared is None:
         return []
@@ -108,9 +108,8 @@ def _signals(requirement: FormalizedRequirement) -> list[Signal]:
         for signal in declared.propositions[name].signals
     )
     signals = (declared.signals[name] for name in names if name in declared.signals)
-    return [signal for signal in signals if not signal.values and not signal.path.each][
-        :_MOST_PLOTTED
-    ]
+    single = [each for each in signals if not each.values and not each.path.each]
+    return [each for each in single if each.pose is None and each.goals is None][:_MOST_PLOTTED]
 
 
 def _line(signal: Signal) -> dict[str, Any]:

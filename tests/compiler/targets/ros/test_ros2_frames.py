@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import random
+from functools import partial
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import pytest
 from rosbags.typesys import Stores, get_typestore
@@ -15,9 +17,12 @@ from fretc.logs.signals.traces import trace
 from monitors.kernel.columns import rows_of
 from monitors.loading import executed
 from tests.fretc.logs.frames.robot import TYPE, drive
-from tests.fretc.logs.logs import S, Sent, declare
+from tests.fretc.logs.logs import MS, S, Sent, declare
 from tests.fretc.logs.logs import write as write_log
 from tests.ros2.emitted import write
+from tests.ros2.messages import message_class
+from tests.ros2.rclpy import Durability, QoSProfile
+from tests.ros2.world import World
 
 BINDINGS = """
 [clock]
@@ -42,6 +47,7 @@ expr = "x > 250 cm"
 [proposition.ahead]
 expr = "heading < 20 deg for 100 ms"
 """
+pytestmark = pytest.mark.slow
 SENTENCE = "whenever far the r shall within 1 second satisfy ahead"
 
 
@@ -69,7 +75,6 @@ def test_the_package_reads_the_topics_of_transforms(package: Path) -> None:
     )
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
 def test_each_tick_is_that_of_the_audit(package: Path, tmp_path: Path, seed: int) -> None:
     chance = random.Random(seed)
@@ -108,3 +113,50 @@ def judged(package: Path, sent: list[Sent]) -> dict[int, dict[str, bool | None]]
     for one in sent:
         node.arrive(one.topic, one.time, one.time, types.deserialize_cdr(one.payload, TYPE))
     return rows
+
+
+def test_a_node_that_starts_late_gets_the_static_transforms_and_the_status(tmp_path: Path) -> None:
+    """Its subscriptions keep: what was published before it started reaches it."""
+    (tmp_path / "R.fret").write_text("whenever far the r shall immediately satisfy docked")
+    tables = """
+[signal.goal]
+action = "/dock"
+[proposition.docked]
+expr = "goal = succeeded"
+"""
+    (tmp_path / "bindings.toml").write_text(BINDINGS.replace("250 cm", "1 cm") + tables)
+    package = write(tmp_path, tmp_path / "src")
+    world = World(2 * S)
+    robot, process = world.node("robot"), world.process()
+    kept = QoSProfile(depth=1, durability=Durability.TRANSIENT_LOCAL)
+    statuses = robot.create_publisher(
+        message_class("action_msgs/GoalStatusArray"), "/dock/_action/status", kept
+    )
+    status = message_class("action_msgs/GoalStatus")(status=4)
+    statuses.publish(message_class("action_msgs/GoalStatusArray")(status_list=[status]))
+    kind = message_class("tf2_msgs/TFMessage")
+    static = robot.create_publisher(kind, "/tf_static", kept)
+    static.publish(kind(transforms=[stamped("base_link", "laser", 1.0, 0)]))
+    moving = robot.create_publisher(kind, "/tf", 100)
+    module = process.load(package, "node")
+    process.init()
+    node = module.MonitorNode()
+    assert node.change("configure")
+    assert node.change("activate")
+    for i in range(20):
+        message = kind(transforms=[stamped("map", "base_link", 1.0, i)])
+        world.after(i * 50 * MS, robot, partial(moving.publish, message))
+    world.run(1.0)
+    ledger = node._status_publisher._supervisor._evaluator.ledger
+    rows = [dict(ledger.row(i)) for i in range(len(ledger))]
+    assert len(rows) > 10
+    assert rows[-1] == {"far": True, "docked": True}
+
+
+def stamped(parent: str, child: str, x: float, count: int) -> Any:
+    """A transform, 50 ms later each."""
+    found = message_class("geometry_msgs/TransformStamped")()
+    found.header.stamp.sec, found.header.stamp.nanosec = divmod(2 * S + count * 50 * MS, S)
+    found.header.frame_id, found.child_frame_id = parent, child
+    found.transform.translation.x, found.transform.rotation.w = x, 1.0
+    return found

@@ -19,7 +19,7 @@ from fretc.watch.sources.source import Arrival, Channel
 from fretish.diagnostics.diagnostic import Code
 from tests.effort import examples
 from tests.fretc.logs.frames.robot import drive, transforms
-from tests.fretc.logs.logs import MS, S, Sent, declare, definition, write
+from tests.fretc.logs.logs import MS, NONE, S, Sent, declare, definition, write
 from tests.monitors.test_transforms import ANSWERS, transform
 
 BINDINGS = """
@@ -68,6 +68,7 @@ def arrived(sent: Sequence[Sent]) -> dict[str, list[tuple[int, float]]]:
     return samples
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("encoding", ["cdr", "json"])
 def test_a_drive_gives_the_poses_of_its_stamps(tmp_path: Path, encoding: str) -> None:
     log = recorded(tmp_path / "run.mcap", drive(200, encoding))
@@ -116,6 +117,7 @@ def test_a_recording_has_the_answers_of_tf2(tmp_path: Path) -> None:
     assert checked > 100
 
 
+@pytest.mark.slow
 @examples(20)
 @given(st.integers(0, 2**32))
 def test_a_watch_reads_the_samples_of_its_recording(seed: int) -> None:
@@ -147,6 +149,27 @@ def test_a_message_that_cannot_be_read_is_unknown_and_counted(tmp_path: Path) ->
     assert np.isnan(x.values[x.times == sent[broken].time]).all()
     later = x.values[x.times > sent[broken].time]
     assert np.isnan(later[0]), "transforms between the lost ones are not interpolated"
+
+
+@pytest.mark.slow
+def test_nothing_is_interpolated_across_lost_messages(tmp_path: Path) -> None:
+    """A chunk of messages is lost: the localization after it has no stamp before it any more."""
+    sent = drive(250)
+    path = write(tmp_path / "run.mcap", sent, compression=NONE, per_chunk=20)
+    whole = recorded(tmp_path / "whole.mcap", sent)
+    data = bytearray(path.read_bytes())
+    data[data.index(sent[100].payload) + 100] ^= 1
+    path.write_bytes(data)
+    log = read(str(path), declare(BINDINGS), NAMES)
+    assert isinstance(log, Recording)
+    ((_, lost),) = log.gaps
+    x = log.samples["x"]
+    after = x.values[x.times > lost]
+    assert len(after) > 50
+    assert np.isnan(after[:40]).all(), "AMCL is a second ahead"
+    assert not np.isnan(after[-1])
+    known = whole.samples["x"].values[whole.samples["x"].times > lost]
+    assert not np.isnan(known).any()
 
 
 def test_a_log_without_the_frames_is_named(tmp_path: Path) -> None:
