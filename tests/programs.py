@@ -145,6 +145,14 @@ def mcapl() -> str:
     return str(home.resolve())
 
 
+def vscode() -> str:
+    """The command of a VS Code for the browser; skipped where FRETC_VSCODE does not name one."""
+    command = os.environ.get("FRETC_VSCODE", "")
+    if _hidden or shutil.which(command) is None:
+        pytest.skip("needs a VS Code: set FRETC_VSCODE to a command such as code-server")
+    return command
+
+
 def ask_ajpf() -> None:
     """Skip the running test, which asks AJPF for half an hour, unless FRETC_AJPF is set."""
     if _hidden or "FRETC_AJPF" not in os.environ:
