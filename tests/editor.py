@@ -19,6 +19,8 @@ CAPABILITIES = {
         "codeAction": {"resolveSupport": {"properties": ["edit"]}},
     },
 }
+GENERAL: dict[str, Any] = {}
+"""More of what the client can do in general."""
 
 
 class Editor:
@@ -37,7 +39,7 @@ class Editor:
         self._answers: dict[int, Any] = {}
         self._id = 0
         self._versions: dict[str, int] = {}
-        general = {"positionEncodings": [encoding]}
+        general = {"positionEncodings": [encoding], **GENERAL}
         folders = [{"uri": uri_of(str(root)), "name": "root"}]
         self.server = self.ask(
             "initialize",

@@ -170,13 +170,14 @@ def text(explained: Explanation) -> str:
     lines = "".join(f"{visible(line)}\n" for line in ltl.text(requirement).splitlines())
     blocks = [lines, drawing.text(explained.picture, "    ")]
     blocks[1] = f"  one run, drawn\n{blocks[1]}\n"
-    blocks.extend(_table(explained, shown) for shown in explained.traces)
+    blocks.extend(table(explained, shown) for shown in explained.traces)
     if explained.notes:
         blocks.append("".join(f"  note: {visible(note)}\n" for note in explained.notes))
     return "\n".join(blocks)
 
 
-def _table(explained: Explanation, shown: ExplainedTrace) -> str:
+def table(explained: Explanation, shown: ExplainedTrace) -> str:
+    """A trace as text for a terminal: its reason, and a line for each row."""
     wordings = explained.requirement.wordings
     names = [
         drawing.shortened(visible(wordings.get(name, name)), _NAME)

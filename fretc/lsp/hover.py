@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from lsprotocol import types as lsp
 
+from compiler.explanation import markdown
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import printing
 from compiler.project.project import Project
@@ -38,7 +39,7 @@ def hover(view: View, offset: int) -> lsp.Hover | None:
         requirement = view.formalized(entry)
         if requirement is not None:
             place = entry.wording
-            parts.insert(0, "\n".join(_of_sentence(requirement)))
+            parts.insert(0, "\n".join(_of_sentence(view, requirement)))
     text = "\n\n---\n\n".join(part for part in parts if part)
     if not text:
         return None
@@ -67,7 +68,7 @@ def code_text(number: str) -> str | None:
     return f"**{number}** {code.summary}\n\n{known.cause}\n\nTo fix it: {known.fix}"
 
 
-def _of_sentence(requirement: FormalizedRequirement) -> Iterator[str]:
+def _of_sentence(view: View, requirement: FormalizedRequirement) -> Iterator[str]:
     yield f"**{_plain(requirement.entry.name)}**"
     yield ""
     yield _plain(meaning(requirement.written, requirement.ticks, requirement.clock))
@@ -76,6 +77,8 @@ def _of_sentence(requirement: FormalizedRequirement) -> Iterator[str]:
     yield f"FT  {_formula(printing.readable(requirement.ft_infinite))}"
     yield f"PT  {_formula(printing.readable(requirement.pt))}"
     yield "```"
+    yield ""
+    yield from markdown.lines(requirement, as_image=view.session.shows_images)
 
 
 def _formula(text: str) -> str:
@@ -93,6 +96,7 @@ def _of_name(view: View, occurrence: Occurrence) -> Iterator[str]:
     yield f"**{_code(occurrence.name)}**"
     yield ""
     yield from _declared(project, occurrence)
+    yield from _in_last_audit(view, occurrence)
     users = _users(view, occurrence)
     if users:
         names = ", ".join(_plain(id) for id in users[:_MOST_USERS])
@@ -145,6 +149,21 @@ def _of_variable(project: Project, name: str) -> Iterator[str]:
     if not (proposition or signal or variable or of_signals):
         broken = any(part == name for _, part in declared.mistakes)
         yield "its table has an error" if broken else "not declared in the bindings"
+
+
+def _in_last_audit(view: View, occurrence: Occurrence) -> Iterator[str]:
+    """The range of each comparison of a name in the last audit; a paragraph for each."""
+    ranges: dict[str, None] = {}
+    for status in view.open_project.statuses.values():
+        for each in status.ranges:
+            signals = re.findall(r"[A-Za-z_][A-Za-z0-9_]*", each.comparison)
+            if each.values and occurrence.name in (each.proposition, *signals):
+                stale = ", which is stale" if status.reasons else ""
+                margin = f", margin {each.margin}" if each.margin else ""
+                text = f"{_code(each.comparison)}: {each.values}{margin} in the last audit{stale}"
+                ranges[text] = None
+    for text in ranges:
+        yield f"\n{text}"
 
 
 def _users(view: View, occurrence: Occurrence) -> list[str]:

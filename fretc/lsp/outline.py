@@ -48,6 +48,7 @@ def _requirement(view: View, entry: RequirementEntry) -> lsp.DocumentSymbol:
         name=entry.id or "requirement",
         detail=entry.title,
         kind=lsp.SymbolKind.Class,
+        tags=[lsp.SymbolTag.Deprecated] if entry.status == "retired" else None,
         range=view.positions.range(start, max(start, entry.wording.end)),
         selection_range=view.positions.of(entry.wording),
     )

@@ -11,7 +11,7 @@ from compiler.files.text_files import read, unsaved_texts
 from compiler.project.paths import HAZARDS
 from fretc.lsp.positions import Positions
 from fretc.lsp.session import OpenProject, Session, with_real_paths
-from fretish.diagnostics.diagnostic import Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Span
 from fretish.reading.toml_text import header_places
 
@@ -126,7 +126,7 @@ class Reports:
             code=diagnostic.code.number,
             source=SOURCE,
             message="\n".join([diagnostic.message, *(reason or help_)]),
-            tags=[lsp.DiagnosticTag.Unnecessary] if diagnostic.accepted else None,
+            tags=[lsp.DiagnosticTag.Unnecessary] if _is_unnecessary(diagnostic) else None,
             related_information=related or None,
         )
 
@@ -136,6 +136,14 @@ class Reports:
         if span.source.name not in positions:
             positions[span.source.name] = Positions(span.source.text, self._encoding)
         return positions[span.source.name].of(span)
+
+
+def _is_unnecessary(diagnostic: Diagnostic) -> bool:
+    """Whether its text can be removed, or its warning is accepted; editors show both dimmed."""
+    return bool(diagnostic.accepted) or diagnostic.code in _IDLE
+
+
+_IDLE = (Code.IDLE_WAIVER, Code.IDLE_ACCEPTANCE)
 
 
 def _severity(diagnostic: Diagnostic) -> lsp.DiagnosticSeverity:

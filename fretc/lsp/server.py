@@ -8,6 +8,7 @@ when one comes.
 from __future__ import annotations
 
 import asyncio
+import gc
 import logging
 import os
 import sys
@@ -36,6 +37,8 @@ _SILENCE = 0.3
 _MANY = 100
 """From so many requirements on the client shows that slow diagnostics are being computed."""
 _REFUSED = lsp.LSPErrorCodes.RequestFailed.value
+_WITH_IMAGES = "marked"
+"""The Markdown parser of VS Code and of editors for the web; terminals show no images."""
 _WATCHED = ("**/*.fret", "**/{bindings,hazards,waivers,fretc,pyproject}.toml", "**/fretc.lock")
 
 
@@ -104,7 +107,18 @@ class Server(LanguageServer):
     def _after_silence(self) -> None:
         if self._timer is not None:
             self._timer.cancel()
-        self._timer = asyncio.get_running_loop().call_later(_SILENCE, self.complete)
+        self._timer = asyncio.get_running_loop().call_later(_SILENCE, self._in_silence)
+
+    def _in_silence(self) -> None:
+        """Compute all diagnostics, and collect garbage now, so that no answer waits for that.
+
+        What is left stays for long: later collections, between messages, need not look at it.
+        """
+        self.complete()
+        if all(project.is_complete for project in self.session.open_projects()):
+            gc.unfreeze()
+            gc.collect()
+            gc.freeze()
 
     def _with_progress(self, project: OpenProject) -> None:
         texts = self.session.texts
@@ -224,6 +238,9 @@ def _initialize(ls: Server, params: lsp.InitializeParams) -> None:
     document = params.capabilities.text_document
     support = document.code_action.resolve_support if document and document.code_action else None
     ls.session.resolves_actions = support is not None and "edit" in support.properties
+    general = params.capabilities.general
+    markdown = general.markdown if general is not None else None
+    ls.session.shows_images = markdown is not None and markdown.parser == _WITH_IMAGES
     options = params.initialization_options
     if isinstance(options, Mapping) and options.get("commands") is True:
         for name in commands.COMMANDS:

@@ -205,6 +205,8 @@ class Session:
         """The workspace folders."""
         self.resolves_actions = False
         """Whether the client asks for the edit of an action when the user chooses it."""
+        self.shows_images = False
+        """Whether the client shows images of Markdown."""
         self.texts: dict[str, str] = {}
         """Path → text, without a byte order mark, of each open file."""
         self.projects: dict[str, OpenProject] = {}

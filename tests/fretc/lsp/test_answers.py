@@ -1,5 +1,6 @@
 """What the server answers about a place: hover, completion, names, renaming, fixes, formatting."""
 
+import base64
 import json
 import shutil
 from collections.abc import Callable, Mapping
@@ -78,14 +79,63 @@ def hovered(client: Editor, path: Path, text: str, at: str) -> str:
     return str(answer["contents"]["value"])
 
 
-def test_a_sentence_is_explained(editor: Start) -> None:
+def test_a_sentence_is_explained(editor: Start, fretc: Fretc) -> None:
     client, path, _ = opened(editor, R2)
-    assert hovered(client, path, R2, "satisfy") == (
+    explained = fretc("explain", "R2").out
+    shown = hovered(client, path, R2, "satisfy")
+    assert shown.startswith(
         "**R2**\n\n"
         "Over the whole run: at every tick at which `near & vx > 2 m/s` becomes true (or is true "
         "at the first tick), `stopped` must be true at that tick or within the next 20 ticks (2 s) "
         "(nothing is required if the run ends before that).\n\n"
         f"```\n{FORMULAS}```"
+    )
+    diagram, traces = shown.split("```")[3].split("\n\n", 1)
+    assert all(line.strip() in explained for line in f"{diagram}\n{traces}".splitlines())
+    assert "near & vx > 2 m/s" in diagram
+    assert "▲" in diagram
+    assert [traces.count(sign) for sign in ("✔ satisfied: ", "✘ violated: ")] == [1, 1]
+
+
+def test_an_editor_that_shows_images_gets_the_diagram_as_one(
+    editor: Start, fretc: Fretc, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    general = {"markdown": {"parser": "marked"}}
+    monkeypatch.setattr("tests.editor.GENERAL", general)
+    client, path, _ = opened(editor, R2)
+    shown = hovered(client, path, R2, "satisfy")
+    data = shown.partition("![diagram](data:image/svg+xml;base64,")[2].partition(")")[0]
+    fretc("explain", "R2", "--svg", "r2.svg")
+    assert base64.b64decode(data).decode() == Path("r2.svg").read_text("utf-8")
+    assert "▲" not in shown
+    assert "✘ violated: " in shown
+
+
+def test_a_sentence_that_is_costly_to_explain_keeps_its_meaning(editor: Start) -> None:
+    client, path, _ = opened(editor)
+    text = f"{HEADER}upon near the robot shall within 999999 seconds satisfy stopped\n"
+    client.change(path, text)
+    shown = hovered(client, path, text, "satisfy")
+    assert "Over the whole run" in shown
+    assert "▲" not in shown
+    assert "violated: " not in shown
+    assert client.log == []
+
+
+def test_a_name_shows_its_range_in_the_last_audit(editor: Start) -> None:
+    known = cases.project(Path("requirements"))
+    Path("build").mkdir()
+    cases.write_evidence(known, Path("build"), cases.result(known, "satisfied"))
+    client, path = editor(), Path.cwd() / "requirements/r1.fret"
+    client.open(path)
+    client.settle()
+    shown = hovered(client, path, cases.R1, "stopped")
+    line = "`abs(vx) < 0.01 m/s`: 0 m/s to 0.0075 m/s, margin 0.0025 m/s in the last audit"
+    assert f"\n{line}\n" in shown
+    client.change(path, cases.R1.replace("eventually", "always"))
+    client.settle()
+    assert f"\n{line}, which is stale\n" in hovered(
+        client, path, cases.R1.replace("eventually", "always"), "stopped"
     )
 
 

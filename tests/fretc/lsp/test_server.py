@@ -220,6 +220,23 @@ def test_an_accepted_warning_is_a_hint_with_its_reason(editor: Start) -> None:
     assert hint["message"].endswith("accepted: so it is meant")
 
 
+def test_what_has_no_effect_is_dimmed_and_what_is_retired_struck_out(editor: Start) -> None:
+    header = '+++\nid = "R"\nstatus = "STATUS"\naccept = { F204 = "why" }\n+++\n'
+    text = f"{header}the R shall always satisfy a\n".replace("STATUS", "approved")
+    paths = project(r1_fret=text)
+    client = editor()
+    uri = client.open(paths["r1"])
+    client.settle()
+    tags = {d["code"]: d.get("tags") for d in client.diagnostics[str(paths["r1"])]}
+    assert tags["F550"] == [1]
+    assert tags["F304"] is None
+    (symbol,) = client.ask("textDocument/documentSymbol", textDocument={"uri": uri})
+    assert "tags" not in symbol
+    client.change(paths["r1"], text.replace("approved", "retired"))
+    (symbol,) = client.ask("textDocument/documentSymbol", textDocument={"uri": uri})
+    assert symbol["tags"] == [1]
+
+
 def test_other_documents_are_none_of_its_business(editor: Start) -> None:
     client = editor()
     for uri in (
