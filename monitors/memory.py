@@ -104,7 +104,7 @@ def _float(reading: Reading) -> float:
 
 
 def _mean(values: "Sequence[Reading]") -> Reading:
-    """The exact mean, rounded once to a 64-bit float; infinite if one is infinite."""
+    """The exact sum as the nearest 64-bit float, divided by their number."""
     if not values:
         return None
     numbers = [_float(value) for value in values]
