@@ -157,6 +157,7 @@ def test_an_audit_has_the_values_of_the_definition_at_every_instant(case: Case) 
 
 @given(CASES, st.lists(st.integers(0, END), max_size=3), st.randoms(use_true_random=False))
 @example(Case(((0, 1.0), (6, 1.0), (6, 1.0)), Memory("count", 5)), [10], random.Random(0))
+@example(Case(((14, 0.0), (24, 0.0), (26, 0.0)), Memory("rate", 3, 9)), [35], random.Random(0))
 def test_a_series_has_them_in_any_order_of_arrival(
     case: Case, cuts: list[int], chance: random.Random
 ) -> None:
