@@ -104,7 +104,7 @@ def _float(reading: Reading) -> float:
 
 
 def _mean(values: "Sequence[Reading]") -> Reading:
-    """The exact mean, rounded once to a 64-bit float; infinite if one is infinite."""
+    """The exact sum as the nearest 64-bit float, divided by their number."""
     if not values:
         return None
     numbers = [_float(value) for value in values]
@@ -171,8 +171,11 @@ class MemorySeries(Series):
         del self.times[:count]
         if not self.times:
             return
-        needed = min(start, self.times[0]) - (self.memory.over or 0)
-        times = self._samples.times
+        times, begin = self._samples.times, min(start, self.times[0])
+        latest = bisect_right(times, begin) - 1
+        if latest >= 0:  # A rate looks back from the last sample.
+            begin = times[latest]
+        needed = begin - (self.memory.over or 0)
         current = bisect_left(times, needed) - 1
         if current > 0:  # A rate also needs the sample before.
             self._samples.forget(times[current])

@@ -100,9 +100,13 @@ def naive(case: Case, time: int) -> float | None:
         return None
     if memory.function == "mean":
         if any(math.isinf(value) for value in within):
-            total = sum(value for value in within if math.isinf(value))
-            return None if math.isnan(total) else total
-        return float(sum(map(Fraction, within)) / len(within))
+            infinite = sum(value for value in within if math.isinf(value))
+            return None if math.isnan(infinite) else infinite
+        total = sum(map(Fraction, within))
+        try:
+            return float(total) / len(within)
+        except OverflowError:
+            return float(total / len(within))
     return max(within) if memory.function == "max" else min(within)
 
 
@@ -140,6 +144,7 @@ def in_force(samples: Samples, gaps: Sequence[tuple[int, int]], time: int) -> fl
 @example(Case(((0, 1.0), (5, 1.0), (5, 0.0), (9, 1.0)), Memory("count", 5)))
 @example(Case(((0, 1.0), (5, 2.5), (5, 0.0)), Memory("rate", None)))
 @example(Case(((0, 1.0), (2, 0.0), (20, 1.0)), Memory("count", 3)))
+@example(Case(((0, 0.0), (1, 1.0), (1, 1.0), (1, 0.1)), Memory("mean", 1)))
 @example(Case(((0, 1.0), (4, 0.0), (9, 1.0)), Memory("max", 3, 4)))
 @example(Case(((0, 1.0), (4, 0.0), (9, 1.0)), Memory("count", 3), ((1, 2),)))
 def test_an_audit_has_the_values_of_the_definition_at_every_instant(case: Case) -> None:
@@ -152,6 +157,7 @@ def test_an_audit_has_the_values_of_the_definition_at_every_instant(case: Case) 
 
 @given(CASES, st.lists(st.integers(0, END), max_size=3), st.randoms(use_true_random=False))
 @example(Case(((0, 1.0), (6, 1.0), (6, 1.0)), Memory("count", 5)), [10], random.Random(0))
+@example(Case(((14, 0.0), (24, 0.0), (26, 0.0)), Memory("rate", 3, 9)), [35], random.Random(0))
 def test_a_series_has_them_in_any_order_of_arrival(
     case: Case, cuts: list[int], chance: random.Random
 ) -> None:
