@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from compiler.formalization.formalized import FormalizedRequirement
 from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.arena.roles import Roles
+from fretc.analysis.arena.undeclared_roles import are_known_before_outputs, undeclared
 from fretc.analysis.arena.variables import UnsupportedError
 from fretc.analysis.components import tokens, without_inputs
 from fretc.analysis.controllers.circuit import Circuit, circuit
@@ -18,7 +19,6 @@ from fretc.analysis.findings import Component, OpenQuestion, RealizabilityVerdic
 from fretc.analysis.games.unrolled_runs import NoShortRun
 from fretc.analysis.realizability_problem import RealizabilityProblem, stage
 from fretc.analysis.reasons import listed
-from fretc.analysis.undeclared_roles import are_known_before_outputs, undeclared
 from fretish.bindings.declarations import Role
 
 if TYPE_CHECKING:

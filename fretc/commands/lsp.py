@@ -9,6 +9,12 @@ from fretc.terminal.output import fail
 
 
 @click.command(epilog=extras({"lsp": "always"}))
+@click.option(
+    "--stdio",
+    is_flag=True,
+    expose_value=False,
+    help="Changes nothing: some editors add this option.",
+)
 def lsp() -> None:
     """Serve an editor: diagnostics, fixes, hover, completion, rename and formatting.
 

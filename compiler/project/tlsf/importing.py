@@ -80,7 +80,7 @@ def _kept_as_formulas(parts: Sequence[SectionFormula]) -> Iterator[Diagnostic]:
     """F622 for the first formula without a sentence, with the number of others."""
     if parts:
         first, *more = parts
-        others = f", nor {len(more)} other formulas" if more else ""
+        others = f", nor {len(more)} other formula{'s' * (len(more) > 1)}" if more else ""
         yield diagnostic("no_pattern", first.span, formula=_short(first), others=others)
 
 

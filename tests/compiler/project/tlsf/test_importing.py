@@ -194,7 +194,7 @@ def test_formulas_without_a_sentence_stay_formulas_and_a_warning_says_so(fretc: 
     run = fretc("import", write("s.tlsf", text), "-o", "set")
     assert run.status == 0
     assert [line for line in run.err.splitlines() if line.startswith(("F622", "  -->"))] == [
-        "F622 warning: no sentence of FRETish means `F G x`, nor 1 other formulas: imported as a "
+        "F622 warning: no sentence of FRETish means `F G x`, nor 1 other formula: imported as a "
         "formula",
         "  --> s.tlsf:4:2",
     ]  # fmt: skip
