@@ -201,7 +201,7 @@ def test_slow_diagnostics_are_given_up_for_a_message_and_computed_later(
 
 # The server as a process --------------------------------------------------------------------------
 
-COMMAND = (sys.executable, "-P", "-c", "from fretc.cli import main; main()", "lsp")
+COMMAND = (sys.executable, "-P", "-c", "from fretc.cli import main; main()", "lsp", "--stdio")
 
 
 class Process:
