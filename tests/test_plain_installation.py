@@ -116,8 +116,9 @@ def test_no_answer_depends_on_an_extra(plain: list[Done], tmp_path: Path) -> Non
         assert untimed(before) == untimed(after), before["words"]
 
 
-TIMED = re.compile(r"(^| )analysis\.json$|/evidence\.sqlite$")
-"""Files that hold when, or in what time, they were made: a store knows logs by their times."""
+TIMED = re.compile(r"(^| )analysis\.(json|answers)$|/evidence\.sqlite$")
+"""Files that hold when, where, or in what time, they were made: a store knows logs by their times,
+and answers are kept for their folder and the libraries that gave them."""
 
 
 def untimed(done: Done) -> Done:

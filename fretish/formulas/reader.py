@@ -191,7 +191,7 @@ class _Reader:
         high = self._number()
         closing = self._take("]")
         if not low <= high <= _LONGEST_BOUND:
-            why = f"`[{low},{high}]` is no interval of ticks"
+            why = f"`{low},{high}` is no interval of ticks"
             raise self._wrong(why, opening.start, closing.end)
         return low, high
 

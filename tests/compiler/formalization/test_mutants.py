@@ -209,7 +209,7 @@ def _with(formula: f.Formula, place: int, child: f.Formula) -> f.Formula:
 def of_watch(watch: MonitorSpec) -> Iterator[tuple[str, MonitorSpec]]:
     for field in fields(watch):
         signal = getattr(watch, field.name)
-        if field.name in ("deadline_ticks", "renewed") or signal is None:
+        if field.name in ("deadline_ticks", "renewed", "missing") or signal is None:
             continue
         for kind, other in of_formula(signal):
             if other != signal:

@@ -58,7 +58,7 @@ def test_a_formula_compares_numbers_as_sentences_do() -> None:
         ('G "G"', "this is no formula: `G` is an operator", '"G"'),
         ("a U b U c", "this is no formula: `U` stands where a parenthesis around the formula "
          "before it, or an operator is expected", "U"),
-        ("F[3,1] a", "this is no formula: `[3,1]` is no interval of ticks", "[3,1]"),
+        ("F[3,1] a", "this is no formula: `3,1` is no interval of ticks", "[3,1]"),
         ("G a)", "this is no formula: `)` stands where an operator is expected", ")"),
         ("G preBool(false, a)",
          "this is no formula: `preBool` of FRETish refers to other ticks", "preBool(false, a)"),
